@@ -1,0 +1,122 @@
+"""Checks of what comes in: every refusal says the rule, the value and the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def number(
+    name: str, value: Any, *, above: float | None = None, least: float | None = None,
+    below: float | None = None, most: float | None = None, remedy: str,
+) -> float:
+    """Return `value` as a float that is finite and lies within the bounds; refuse anything else."""
+    array = _real(name, value, remedy)
+    if array.ndim:
+        raise ValueError(f"{name} must be one number, got an array of shape {array.shape}; {remedy}")
+    _bound(name, array, above, least, below, most, remedy)
+    return float(array)
+
+
+def numbers(
+    name: str, values: Any, *, above: float | None = None, least: float | None = None,
+    below: float | None = None, most: float | None = None, remedy: str, ndim: int | None = None,
+) -> Array:
+    """Return `values` as a read-only float array, finite and within the bounds; refuse anything else."""
+    array = _real(name, values, remedy).copy()
+    if ndim is not None and array.ndim != ndim:
+        raise ValueError(f"{name} must have {ndim} dimension(s), got shape {array.shape}; {remedy}")
+    _bound(name, array, above, least, below, most, remedy)
+    array.flags.writeable = False
+    return array
+
+
+def whole(name: str, value: Any, *, least: int, remedy: str) -> int:
+    """Return `value` as an int of at least `least`; refuse anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise TypeError(f"{name} must be a whole number, got {value!r}; {remedy}")
+    if value < least:
+        raise ValueError(f"{name} must be at least {least}, got {value}; {remedy}")
+    return int(value)
+
+
+def choice(name: str, value: Any, options: Sequence[str]) -> str:
+    """Return `value` if it is one of the options; refuse anything else."""
+    if value not in options:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, options))}, got {value!r}; choose one of these")
+    return str(value)
+
+
+def instance(name: str, value: Any, kind: type | tuple[type, ...], remedy: str) -> Any:
+    """Return `value` if it is an instance of `kind`; refuse anything else."""
+    if not isinstance(value, kind):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        names = " or ".join(k.__name__ for k in kinds)
+        raise TypeError(f"{name} must be a {names}, got {type(value).__name__}; {remedy}")
+    return value
+
+
+def _real(name: str, value: Any, remedy: str) -> Array:
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be real numbers, got {_short(value)}; {remedy}") from None
+    return array.astype(np.float64)
+
+
+def _bound(
+    name: str, array: Array, above: float | None, least: float | None,
+    below: float | None, most: float | None, remedy: str,
+) -> None:
+    wrong = ~np.isfinite(array)
+    if above is not None:
+        wrong |= array <= above
+    if least is not None:
+        wrong |= array < least
+    if below is not None:
+        wrong |= array >= below
+    if most is not None:
+        wrong |= array > most
+    if np.any(wrong):
+        first = np.argwhere(wrong)[0]
+        place = f"[{', '.join(map(str, first))}]" if array.ndim else ""
+        raise ValueError(f"{name}{place} must {_rule(above, least, below, most)}, got {array[tuple(first)]:g}; {remedy}")
+
+
+def _rule(above: float | None, least: float | None, below: float | None, most: float | None) -> str:
+    low = above if above is not None else least
+    high = below if below is not None else most
+    if low is not None and high is not None:
+        return f"lie in {'(' if above is not None else '['}{low:g}, {high:g}{')' if below is not None else ']'}"
+    if low is not None:
+        return f"be above {low:g}" if above is not None else f"be at least {low:g}"
+    if high is not None:
+        return f"be below {high:g}" if below is not None else f"be at most {high:g}"
+    return "be finite"
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+DIRECTIONS = ("vertical", "lateral")
+
+
+def points(name: str, values: Any) -> Array:
+    """Return places on a deck as an (n, 2) array of x and y [m]; a plain list of x lies on the centre line."""
+    remedy = "give x [m], or pairs (x, y) [m]"
+    array = np.atleast_1d(numbers(name, values, remedy=remedy))
+    if array.ndim == 1:
+        array = np.column_stack([array, np.zeros_like(array)])
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name} must have shape (n,) or (n, 2), got {array.shape}; {remedy}")
+    array.flags.writeable = False
+    return array

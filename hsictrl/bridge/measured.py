@@ -1,0 +1,87 @@
+"""Footbridges described by a measured frequency response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import control as ct
+import numpy as np
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeasuredBridge:
+    """A footbridge known by its frequency response, from forces to accelerations at some points.
+
+    People can stand at these points, and at no other.
+
+    Parameters
+    ----------
+    response : control.FrequencyResponseData
+        Accelerance of the empty bridge: response (i, j) is the acceleration of point i per force at
+        point j, on a grid of angular frequencies in increasing order [m/s² per N, rad/s].
+    positions : array_like, shape (n,) or (n, 2)
+        Places x, or (x, y), of the n points [m].
+    modal_mass : float
+        Modal mass of the mode in question, scaled to one at the first point; effective damping
+        refers to it (eq. 17) [kg].
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> plant = reference_bridge(frequency=2.0).ss(at=[25.0])
+    >>> omega = 2 * np.pi * np.linspace(1.0, 3.0, 401)
+    >>> MeasuredBridge(response=ct.frequency_response(plant["a[0]", "F[0]"], omega),
+    ...                positions=[25.0], modal_mass=25e3).positions
+    array([[25.,  0.]])
+    """
+
+    response: ct.FrequencyResponseData
+    positions: Array
+    modal_mass: float
+
+    def __post_init__(self) -> None:
+        check.instance("response", self.response, ct.FrequencyResponseData, "use control.frd or a frequency_response")
+        places = check.points("positions", self.positions)
+        if self.response.shape != (len(places), len(places)):
+            raise ValueError(f"response must have a row and a column for each of the {len(places)} positions, got "
+                             f"shape {self.response.shape}; measure the force at every point, at every point")
+        check.numbers("the response's omega", self.response.omega, above=0, remedy="leave out 0 rad/s and below")
+        if len(self.response.omega) < 4 or np.any(np.diff(self.response.omega) <= 0):
+            raise ValueError("the response's omega must increase over at least 4 frequencies, got "
+                             f"{len(self.response.omega)}; sort the record by frequency")
+        if not np.all(np.isfinite(self.response.frdata)):
+            raise ValueError("response must be finite, got NaN or infinity; leave out the frequencies where it is not")
+        object.__setattr__(self, "positions", places)
+        object.__setattr__(self, "modal_mass", check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
+
+    def points_of(self, positions: Any) -> np.ndarray:
+        """Index of the measured point at each place; refuse places where nothing was measured.
+
+        Parameters
+        ----------
+        positions : array_like, shape (n,) or (n, 2)
+            Places x, or (x, y) [m].
+
+        Returns
+        -------
+        array of int, shape (n,)
+            Index of the point [-].
+
+        Examples
+        --------
+        >>> frd = ct.frd(np.ones((2, 2, 5)), np.arange(1.0, 6.0))
+        >>> MeasuredBridge(response=frd, positions=[10.0, 20.0], modal_mass=1.0).points_of([20.0])
+        array([1])
+        """
+        places = check.points("positions", positions)
+        apart = np.linalg.norm(places[:, None] - self.positions[None], axis=2)
+        if np.any(apart.min(axis=1, initial=np.inf) > 1e-6):
+            i = int(np.argmax(apart.min(axis=1)))
+            raise ValueError(f"positions must be among the measured points, got positions[{i}] = ({places[i, 0]:g}, "
+                             f"{places[i, 1]:g}) m; move it to the nearest point, or measure there")
+        return np.argmin(apart, axis=1)

@@ -1,0 +1,402 @@
+"""Footbridges described by their modes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import control as ct
+import numpy as np
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.bridge.shapes import Shape, SineShape, beam_modes
+
+PERCENT = "give a fraction, not percent"
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mode:
+    """One mode of vibration of the empty bridge.
+
+    Parameters
+    ----------
+    frequency : float
+        Natural frequency f_B [Hz].
+    damping : float
+        Modal damping ratio ξ_B, in [0, 1) [-].
+    modal_mass : float
+        Modal mass m_B that belongs to the shape as it is scaled, one at its antinode [kg].
+    shape : Shape
+        Mode shape [-].
+
+    Examples
+    --------
+    >>> mode = Mode(frequency=2.0, damping=0.005, modal_mass=25e3, shape=SineShape(50.0))
+    >>> print(mode)
+    2.000 Hz, 0.50 %, 25000 kg
+    """
+
+    frequency: float
+    damping: float
+    modal_mass: float
+    shape: Shape
+
+    def __post_init__(self) -> None:
+        store = object.__setattr__
+        store(self, "frequency", check.number("frequency", self.frequency, above=0, remedy="give Hz"))
+        store(self, "damping", check.number("damping", self.damping, least=0, below=1, remedy=PERCENT))
+        store(self, "modal_mass", check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
+        check.instance("shape", self.shape, Shape, "use SineShape, BeamShape or a Shape of your own")
+
+    def __str__(self) -> str:
+        return f"{self.frequency:.3f} Hz, {100 * self.damping:.2f} %, {self.modal_mass:.0f} kg"
+
+    @property
+    def omega(self) -> float:
+        """Natural angular frequency ω_B [rad/s]."""
+        return 2 * np.pi * self.frequency
+
+    def ss(self, *, name: str = "mode") -> ct.StateSpace:
+        """Give the mode as a block in mass-normalised coordinates (eq. 1).
+
+        Parameters
+        ----------
+        name : str
+            Name of the block.
+
+        Returns
+        -------
+        control.StateSpace
+            Input P, the modal force Φᵀp [N/√kg]; outputs z, dz, ddz [m √kg, and per s, per s²];
+            states z and dz.
+
+        Examples
+        --------
+        >>> mode = reference_bridge(frequency=2.0).modes[0].ss()
+        >>> mode.input_labels, mode.output_labels
+        (['P'], ['z', 'dz', 'ddz'])
+        """
+        omega, gamma = self.omega, 2 * self.damping * self.omega
+        return ct.ss([[0, 1], [-omega**2, -gamma]], [[0], [1]], [[1, 0], [0, 1], [-omega**2, -gamma]], [[0], [0], [1]],
+                     inputs=["P"], outputs=["z", "dz", "ddz"], states=["z", "dz"], name=name)
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Footbridge:
+    """A footbridge: its modes and its deck.
+
+    The deck reaches from x = 0 to `length` and from y = −`width`/2 to `width`/2; off it every mode
+    shape counts as zero.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+        The modes that are retained.
+    length : float
+        Length of the deck, L [m].
+    width : float
+        Walkable width of the deck [m].
+    mass : float
+        Mass of the whole bridge, to which a crowd's mass ratio refers (eq. 13) [kg].
+
+    Examples
+    --------
+    >>> bridge = Footbridge.simply_supported(length=50.0, width=3.0, mass=50e3, frequency=3.25, damping=0.005)
+    >>> print(bridge)
+    footbridge 50 m × 3 m, 50000 kg
+      mode 0: 3.250 Hz, 0.50 %, 25000 kg
+    """
+
+    modes: Sequence[Mode]
+    length: float
+    width: float
+    mass: float
+
+    def __post_init__(self) -> None:
+        store = object.__setattr__
+        store(self, "modes", _modes(self.modes))
+        for name, unit in (("length", "m"), ("width", "m"), ("mass", "kg")):
+            store(self, name, check.number(name, getattr(self, name), above=0, remedy=f"give {unit}"))
+        for mode in self.modes:
+            if not np.isclose(mode.shape.length, self.length):
+                raise ValueError(f"every shape must be as long as the deck, {self.length:g} m, got "
+                                 f"{mode.shape.length:g} m; make shape and bridge of one length")
+
+    @classmethod
+    def simply_supported(
+        cls, *, length: float, width: float, mass: float, frequency: float,
+        damping: float | Sequence[float], n_modes: int = 1,
+    ) -> Footbridge:
+        """Uniform simply supported beam: shapes sin(jπx/L), frequencies j²f₁, modal mass half the mass.
+
+        Parameters
+        ----------
+        length, width : float
+            Length and walkable width of the deck [m].
+        mass : float
+            Mass of the whole bridge [kg].
+        frequency : float
+            Fundamental frequency f₁ [Hz].
+        damping : float or sequence of float
+            Modal damping ratio, one for all modes or one per mode [-].
+        n_modes : int
+            Number of modes [-].
+
+        Returns
+        -------
+        Footbridge
+
+        Examples
+        --------
+        >>> bridge = Footbridge.simply_supported(length=50.0, width=3.0, mass=50e3, frequency=2.0,
+        ...                                      damping=[0.005, 0.01], n_modes=2)
+        >>> [mode.frequency for mode in bridge.modes]
+        [2.0, 8.0]
+        """
+        n_modes = check.whole("n_modes", n_modes, least=1, remedy="ask for at least one mode")
+        length = check.number("length", length, above=0, remedy="give m")
+        shapes = [(float(j**2), SineShape(length, j)) for j in range(1, n_modes + 1)]
+        return cls._uniform(shapes, length, width, mass, frequency, damping)
+
+    @classmethod
+    def beam(
+        cls, *, spans: Sequence[float], width: float, mass: float, frequency: float,
+        damping: float | Sequence[float], ends: tuple[str, str] = ("pinned", "pinned"), n_modes: int = 1,
+    ) -> Footbridge:
+        """Uniform Euler–Bernoulli beam over several spans, on pinned inner supports.
+
+        Parameters
+        ----------
+        spans : sequence of float
+            Lengths of the spans [m].
+        width : float
+            Walkable width of the deck [m].
+        mass : float
+            Mass of the whole bridge [kg].
+        frequency : float
+            Fundamental frequency f₁; the higher ones follow from the beam [Hz].
+        damping : float or sequence of float
+            Modal damping ratio, one for all modes or one per mode [-].
+        ends : (str, str)
+            "pinned" or "clamped", at x = 0 and at the far end.
+        n_modes : int
+            Number of modes [-].
+
+        Returns
+        -------
+        Footbridge
+
+        Examples
+        --------
+        >>> bridge = Footbridge.beam(spans=[20.0, 30.0, 20.0], width=3.0, mass=70e3, frequency=2.5,
+        ...                          damping=0.005, n_modes=3)
+        >>> [round(mode.frequency, 2) for mode in bridge.modes]
+        [2.5, 4.76, 6.06]
+        """
+        shapes = beam_modes(spans, ends=ends, n_modes=n_modes)
+        return cls._uniform(shapes, float(np.sum(spans)), width, mass, frequency, damping)
+
+    @classmethod
+    def _uniform(
+        cls, shapes: Sequence[tuple[float, Shape]], length: float, width: float, mass: float,
+        frequency: float, damping: float | Sequence[float],
+    ) -> Footbridge:
+        """Modes of a beam of uniform mass, from shapes with their frequencies relative to the first."""
+        mass = check.number("mass", mass, above=0, remedy="give kg")
+        frequency = check.number("frequency", frequency, above=0, remedy="give Hz")
+        dampings = _one_per_mode(damping, len(shapes))
+        modes = [Mode(frequency=ratio * frequency, damping=float(xi), modal_mass=mass * shape.mean_square, shape=shape)
+                 for (ratio, shape), xi in zip(shapes, dampings, strict=True)]
+        return cls(modes=modes, length=length, width=width, mass=mass)
+
+    def __str__(self) -> str:
+        lines = [f"footbridge {self.length:g} m × {self.width:g} m, {self.mass:.0f} kg"]
+        return "\n".join(lines + [f"  mode {j}: {mode}" for j, mode in enumerate(self.modes)])
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes n_m [-]."""
+        return len(self.modes)
+
+    @property
+    def area(self) -> float:
+        """Walkable surface of the deck, A [m²]."""
+        return self.length * self.width
+
+    @property
+    def omega(self) -> Array:
+        """Natural angular frequencies ω_Bj, shape (n_m,) [rad/s]."""
+        return np.array([mode.omega for mode in self.modes])
+
+    @property
+    def damping(self) -> Array:
+        """Modal damping ratios ξ_Bj, shape (n_m,) [-]."""
+        return np.array([mode.damping for mode in self.modes])
+
+    def mode(self, index: int) -> Mode:
+        """Mode by its index.
+
+        Parameters
+        ----------
+        index : int
+            0 for the first mode [-].
+
+        Returns
+        -------
+        Mode
+
+        Examples
+        --------
+        >>> print(reference_bridge(frequency=2.0).mode(0))
+        2.000 Hz, 0.50 %, 25000 kg
+        """
+        index = check.whole("mode", index, least=0, remedy="count modes from 0")
+        if index >= self.n_modes:
+            raise ValueError(f"mode must be below the number of modes {self.n_modes}, got {index}; "
+                             "count modes from 0, or describe the bridge with more of them")
+        return self.modes[index]
+
+    def on_deck(self, name: str, positions: Any) -> Array:
+        """Places on the deck as (n, 2) coordinates; refuse any that lie off it.
+
+        Parameters
+        ----------
+        name : str
+            What to call the places in a refusal.
+        positions : array_like, shape (n,) or (n, 2)
+            Places x, or (x, y) [m].
+
+        Returns
+        -------
+        array, shape (n, 2)
+            Coordinates x, y [m].
+
+        Examples
+        --------
+        >>> reference_bridge(frequency=2.0).on_deck("positions", [10.0, 25.0]).shape
+        (2, 2)
+        """
+        places = check.points(name, positions)
+        off = (places[:, 0] < 0) | (places[:, 0] > self.length) | (np.abs(places[:, 1]) > self.width / 2)
+        if np.any(off):
+            i = int(np.argmax(off))
+            raise ValueError(f"{name} must lie on the deck, 0 ≤ x ≤ {self.length:g} and |y| ≤ {self.width / 2:g} m, "
+                             f"got {name}[{i}] = ({places[i, 0]:g}, {places[i, 1]:g}); move it, or leave it out")
+        return places
+
+    def participation(self, positions: Any, direction: Any = "vertical") -> Array:
+        """Rows with which points take part in the modes: mass-normalised shapes, zero off the deck.
+
+        Parameters
+        ----------
+        positions : array_like, shape (n,) or (n, 2)
+            Places x, or (x, y) [m].
+        direction : str or array of str, shape (n,)
+            Direction of the motion at each point, "vertical" or "lateral".
+
+        Returns
+        -------
+        array, shape (n, n_m)
+            Rows of Φ [1/√kg].
+
+        Examples
+        --------
+        >>> float(reference_bridge(frequency=2.0).participation([25.0])[0, 0] ** -2)
+        25000.0
+        """
+        x, y = check.points("positions", positions).T
+        return np.column_stack([
+            np.where(np.asarray(direction) == "vertical", mode.shape(x, y, "vertical"), mode.shape(x, y, "lateral"))
+            / np.sqrt(mode.modal_mass) for mode in self.modes])
+
+    def ss(
+        self, *, at: Any, ports: Sequence[str] = ("y", "v", "a"), name: str = "bridge",
+    ) -> ct.StateSpace:
+        """Give the empty bridge as a block with a vertical port at every given point (eqs. 5–8, 12).
+
+        The outputs are ordered y[0], v[0], a[0], y[1], …, so that bodies put together by
+        ``control.append`` close around it with ``control.feedback(plant, bodies, sign=+1)``.
+
+        Parameters
+        ----------
+        at : array_like, shape (n,) or (n, 2)
+            Places x, or (x, y) [m].
+        ports : ("y", "v", "a") or ("y", "v")
+            Motion given out at every point: displacement [m], velocity [m/s], acceleration [m/s²].
+        name : str
+            Name of the block.
+
+        Returns
+        -------
+        control.StateSpace
+            Inputs F[i] [N]; outputs y[i], v[i], a[i]; states z[j], dz[j].
+
+        Examples
+        --------
+        >>> reference_bridge(frequency=2.0).ss(at=[25.0]).output_labels
+        ['y[0]', 'v[0]', 'a[0]']
+        """
+        if tuple(ports) not in (("y", "v"), ("y", "v", "a")):
+            raise ValueError(f"ports must be ('y', 'v', 'a') or ('y', 'v'), got {tuple(ports)}; choose one of these")
+        rows = self.participation(self.on_deck("at", at))
+        n, n_m = rows.shape
+        zero, eye = np.zeros((n_m, n_m)), np.eye(n_m)
+        A = np.block([[zero, eye], [-np.diag(self.omega**2), -np.diag(2 * self.damping * self.omega)]])
+        B = np.vstack([np.zeros((n_m, n)), rows.T])
+        motion = np.stack([rows @ np.hstack([eye, zero]), rows @ np.hstack([zero, eye]), rows @ A[n_m:]], axis=1)
+        direct = np.stack([np.zeros((n, n)), np.zeros((n, n)), rows @ rows.T], axis=1)
+        kept = len(ports)
+        return ct.ss(A, B, motion[:, :kept].reshape(n * kept, -1), direct[:, :kept].reshape(n * kept, -1),
+                     inputs=_labels("F", n), outputs=[f"{port}[{i}]" for i in range(n) for port in ports],
+                     states=_labels("z", n_m) + _labels("dz", n_m), name=name)
+
+
+def reference_bridge(*, frequency: float = 2.0, damping: float = 0.005, modal_mass: float = 25e3) -> Footbridge:
+    """The paper's reference structure: a simply supported beam of 50 m × 3 m, first mode only (section 3.1).
+
+    Parameters
+    ----------
+    frequency : float
+        Natural frequency f_B, 1 to 6 Hz in the paper [Hz].
+    damping : float
+        Modal damping ratio ξ_B, 0.002 to 0.02 in the paper [-].
+    modal_mass : float
+        Modal mass m_B, half of the bridge's; 20 to 50 t in section 4.2 [kg].
+
+    Returns
+    -------
+    Footbridge
+
+    Examples
+    --------
+    >>> print(reference_bridge(frequency=3.25))
+    footbridge 50 m × 3 m, 50000 kg
+      mode 0: 3.250 Hz, 0.50 %, 25000 kg
+    """
+    modal_mass = check.number("modal_mass", modal_mass, above=0, remedy="give kg")
+    return Footbridge.simply_supported(length=50.0, width=3.0, mass=2 * modal_mass, frequency=frequency, damping=damping)
+
+
+def _labels(base: str, n: int) -> list[str]:
+    return [f"{base}[{i}]" for i in range(n)]
+
+
+def _modes(modes: Any) -> tuple[Mode, ...]:
+    modes = tuple(modes) if isinstance(modes, Iterable) else (modes,)
+    if not modes:
+        raise ValueError("modes must hold at least one Mode, got none; describe the bridge with its modes")
+    for mode in modes:
+        check.instance("modes", mode, Mode, "give a sequence of Mode")
+    return modes
+
+
+def _one_per_mode(damping: Any, n_modes: int) -> Array:
+    ratios = check.numbers("damping", damping, least=0, below=1, remedy=PERCENT)
+    if ratios.ndim and ratios.shape != (n_modes,):
+        raise ValueError(f"damping must be one number or one per mode ({n_modes}), got shape {ratios.shape}; "
+                         "match it to n_modes")
+    return np.broadcast_to(ratios, n_modes)

@@ -1,0 +1,72 @@
+"""A measured frequency response, occupied by a crowd."""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+import control as ct
+import numpy as np
+from numpy.typing import NDArray
+
+from hsictrl._checks import Array
+from hsictrl.bridge import MeasuredBridge
+from hsictrl.pedestrian import Crowd
+
+
+@final
+class OccupiedMeasurement(ct.FrequencyResponseData):
+    """A measured bridge with standing people, on the frequencies of the measurement. Made by `couple`.
+
+    Contact forces −α(iω)a at the points where people stand close the loop: (I + H A)⁻¹H with the
+    measured accelerance H and the apparent masses A = diag Σα.
+
+    Parameters
+    ----------
+    bridge : MeasuredBridge
+        The empty bridge.
+    people : Crowd
+        The n bodies.
+    positions : array, shape (n, 2)
+        Where they stand, each at a measured point [m].
+    force_at, sense_at : array_like, optional
+        Measured points of the forces and accelerations; the first point if not given [m].
+    name : str
+        Name of the system.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.coupling import couple
+    >>> from hsictrl.pedestrian import Pedestrian
+    >>> plant = reference_bridge(frequency=2.0).ss(at=[25.0])
+    >>> omega = 2 * np.pi * np.linspace(1.0, 3.0, 401)
+    >>> measured = MeasuredBridge(response=ct.frequency_response(plant["a[0]", "F[0]"], omega),
+    ...                           positions=[25.0], modal_mass=25e3)
+    >>> occupied = couple(measured, [Pedestrian()] * 8, np.full(8, 25.0))
+    >>> bool(abs(occupied.frdata).max() < abs(measured.response.frdata).max())
+    True
+    """
+
+    def __init__(
+        self, bridge: MeasuredBridge, people: Crowd, positions: Array, *,
+        force_at: Any = None, sense_at: Any = None, name: str = "occupied",
+    ) -> None:
+        self.bridge, self.people, self.positions = bridge, people, positions
+        first = bridge.positions[:1]
+        drive = bridge.points_of(first if force_at is None else force_at)
+        sense = bridge.points_of(first if sense_at is None else sense_at)
+        closed = _closed_loop(bridge, people, bridge.points_of(positions))
+        super().__init__(
+            np.moveaxis(closed[:, sense][:, :, drive], 0, -1), bridge.response.omega, name=name,
+            inputs=[f"F[{i}]" for i in range(len(drive))], outputs=[f"a[{i}]" for i in range(len(sense))])
+
+
+def _closed_loop(bridge: MeasuredBridge, people: Crowd, points: NDArray[np.intp]) -> NDArray[np.complex128]:
+    """Accelerance of the occupied bridge between all points, shape (w, p, p)."""
+    n_points = len(bridge.positions)
+    s = 1j * bridge.response.omega
+    mass = np.zeros((len(s), n_points), dtype=complex)
+    for body, point in zip(people, points, strict=True):
+        mass[:, point] += body.apparent_mass(s)
+    empty = np.moveaxis(bridge.response.frdata, -1, 0)
+    return np.linalg.solve(np.eye(n_points) + empty * mass[:, None, :], empty)

@@ -1,0 +1,272 @@
+"""The occupied bridge at an instant, as a linear time-invariant system (A.7–A.10)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, final
+
+import control as ct
+import numpy as np
+from numpy.typing import NDArray
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.bridge import Footbridge, MeasuredBridge
+from hsictrl.coupling.blocks import blocks_of
+from hsictrl.coupling.condensation import CondensedCrowd
+from hsictrl.coupling.interconnection import interconnect
+from hsictrl.coupling.measurement import OccupiedMeasurement
+from hsictrl.pedestrian import Crowd, Pedestrian
+
+Complex = NDArray[np.complex128]
+
+
+def couple(
+    bridge: Footbridge | MeasuredBridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = (), positions: Any = (),
+    *, force_at: Any = None, sense_at: Any = None, name: str = "occupied",
+) -> OccupiedBridge | OccupiedMeasurement:
+    """Put people on a bridge and close the loop, exactly (A.7–A.10).
+
+    Parameters
+    ----------
+    bridge : Footbridge or MeasuredBridge
+        The empty bridge.
+    people : Crowd, Pedestrian or sequence of Pedestrian
+        One body per position, or one body that stands at all of them; nobody by default.
+    positions : array_like, shape (n,) or (n, 2)
+        Places x, or (x, y), on the deck [m].
+    force_at, sense_at : array_like, shape (p,) or (p, 2), optional
+        Where vertical forces act and where vertical accelerations are read; the antinode of the
+        first mode if not given (of a measured bridge, the first point) [m].
+    name : str
+        Name of the system.
+
+    Returns
+    -------
+    OccupiedBridge
+        A `control.StateSpace` from F[i] [N] to a[i] [m/s²]; of a measured bridge, an
+        `OccupiedMeasurement`, which is a `control.FrequencyResponseData`.
+
+    Raises
+    ------
+    ValueError
+        If a place lies off the deck, or the number of bodies and positions differs.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> occupied = couple(reference_bridge(frequency=2.0), Pedestrian(), np.linspace(0, 50, 15))
+    >>> occupied.nstates, occupied.input_labels, occupied.output_labels
+    (32, ['F[0]'], ['a[0]'])
+    >>> empty = couple(reference_bridge(frequency=2.0))
+    >>> empty.nstates
+    2
+    """
+    check.instance("bridge", bridge, (Footbridge, MeasuredBridge), "describe the bridge first")
+    places = check.points("positions", positions)
+    crowd = _crowd(people, len(places))
+    kind = OccupiedBridge if isinstance(bridge, Footbridge) else OccupiedMeasurement
+    return kind(bridge, crowd, places, force_at=force_at, sense_at=sense_at, name=name)  # type: ignore[arg-type]
+
+
+@final
+class OccupiedBridge(ct.StateSpace):
+    """A bridge with standing people: every `control` function takes it. Made by `couple`.
+
+    States are those of (A.7): z[j], u[k], dz[j], du[k]. The frequency response condenses the
+    bodies into an n_m × n_m apparent mass, whatever their number, and so does every function
+    of the host that asks for one.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    people : Crowd
+        The n bodies.
+    positions : array, shape (n, 2)
+        Where they stand [m].
+    force_at, sense_at : array_like, optional
+        As in `couple` [m].
+    name : str
+        Name of the system.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> print(couple(reference_bridge(frequency=2.0), Pedestrian(), [20.0, 30.0]))
+    <OccupiedBridge> occupied: 2 bodies, 140 kg, 3.25–3.25 Hz, 30–30 %
+    on footbridge 50 m × 3 m, 50000 kg
+      mode 0: 2.000 Hz, 0.50 %, 25000 kg
+    Inputs (1): ['F[0]']
+    Outputs (1): ['a[0]']
+    States (6): ['z[0]', 'u[0]', 'u[1]', 'dz[0]', 'du[0]', 'du[1]']
+    """
+
+    def __init__(
+        self, bridge: Footbridge, people: Crowd, positions: Array, *,
+        force_at: Any = None, sense_at: Any = None, name: str = "occupied",
+    ) -> None:
+        antinode = [bridge.modes[0].shape.antinode]
+        self.bridge, self.people = bridge, people
+        self.positions = bridge.on_deck("positions", positions)
+        self.force_at = bridge.on_deck("force_at", antinode if force_at is None else force_at)
+        self.sense_at = bridge.on_deck("sense_at", antinode if sense_at is None else sense_at)
+        self._drive, self._sense = bridge.participation(self.force_at), bridge.participation(self.sense_at)
+        self.condensed = CondensedCrowd(people, bridge.participation(self.positions, people.direction))
+        n_m, n = self.condensed.rows.shape[1], len(people)
+        super().__init__(
+            *self._matrices(), 0, name=name,
+            inputs=_labels("F", len(self.force_at)), outputs=_labels("a", len(self.sense_at)),
+            states=_labels("z", n_m) + _labels("u", n) + _labels("dz", n_m) + _labels("du", n))
+
+    def _matrices(self) -> tuple[Array, Array, Array, Array]:
+        """A_c, B_c, C_c, D_c of (A.8) by their structure: only the modal mass matrix is ever inverted."""
+        people, rows = self.people, self.condensed.rows
+        n, n_m = rows.shape
+        mass = np.eye(n_m) + rows.T * people.unsprung_mass @ rows
+        stiffness = np.diag(self.bridge.omega**2) + rows.T * people.stiffness @ rows
+        damping = np.diag(2 * self.bridge.damping * self.bridge.omega) + rows.T * people.damping_coefficient @ rows
+        acceleration = np.linalg.solve(mass, np.hstack([
+            -stiffness, rows.T * people.stiffness, -damping, rows.T * people.damping_coefficient]))
+        half = n_m + n
+        A = np.zeros((2 * half, 2 * half))
+        A[np.arange(half), half + np.arange(half)] = 1.0
+        A[half:half + n_m] = acceleration
+        bodies, u, du = half + n_m + np.arange(n), n_m + np.arange(n), half + n_m + np.arange(n)
+        spring, dashpot = people.omega**2, 2 * people.damping * people.omega
+        A[half + n_m:, :n_m] = spring[:, None] * rows
+        A[half + n_m:, half:half + n_m] = dashpot[:, None] * rows
+        A[bodies, u], A[bodies, du] = -spring, -dashpot
+        push = np.linalg.solve(mass, self._drive.T)
+        B = np.zeros((2 * half, len(self._drive)))
+        B[half:half + n_m] = push
+        return A, B, self._sense @ acceleration, self._sense @ push
+
+    def dynamic_stiffness(self, s: Any) -> Complex:
+        """Condensed dynamic stiffness s²(I + Σφφᵀα(s)) + sΓ + Ω² of the occupied bridge.
+
+        Parameters
+        ----------
+        s : complex or array, shape (w,)
+            Laplace variable [rad/s].
+
+        Returns
+        -------
+        array, shape (w, n_m, n_m)
+            In mass-normalised coordinates [1/s²].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> couple(reference_bridge(frequency=2.0)).dynamic_stiffness(0)[0, 0, 0].real ** 0.5 / (2 * np.pi)
+        np.float64(2.0)
+        """
+        s = np.atleast_1d(np.asarray(s, dtype=complex))
+        stiffness = s[:, None, None]**2 * (np.eye(self.bridge.n_modes) + self.condensed.apparent_mass(s))
+        diagonal = np.einsum("wjj->wj", stiffness)
+        diagonal += np.multiply.outer(s, 2 * self.bridge.damping * self.bridge.omega) + self.bridge.omega**2
+        return stiffness
+
+    def horner(self, x: Any, warn_infinite: bool = True) -> Complex:
+        """Evaluate the transfer function by condensation; the host's functions call this.
+
+        Parameters
+        ----------
+        x : complex or array, shape (w,)
+            Laplace variable [rad/s].
+        warn_infinite : bool
+            Whether to warn at a pole.
+
+        Returns
+        -------
+        array, shape (outputs, inputs, w)
+            Accelerance [m/s² per N].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> couple(reference_bridge(frequency=2.0)).horner(4j * np.pi).shape
+        (1, 1, 1)
+        """
+        s = np.atleast_1d(np.asarray(x, dtype=complex))
+        response = self._condensed_response(s)
+        missed = ~np.isfinite(response).all(axis=(0, 1))
+        if np.any(missed):    # a pole of the system or of an undamped body: the host knows the limit
+            response[:, :, missed] = super().horner(s[missed], warn_infinite)
+        return response
+
+    def _condensed_response(self, s: Complex) -> Complex:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            try:
+                motion = np.linalg.solve(self.dynamic_stiffness(s), self._drive.T[None])
+            except np.linalg.LinAlgError:
+                motion = np.full((len(s), *self._drive.T.shape), np.nan + 0j)
+            return np.asarray(np.moveaxis(s[:, None, None]**2 * (self._sense @ motion), 0, -1))
+
+    def interconnected(self) -> ct.LinearICSystem:
+        """Give the same system as blocks: one named block per mode and per walker, joined by signal names.
+
+        Returns
+        -------
+        control.LinearICSystem
+            With blocks mode0, mode1, … and walker0, walker1, …; its `connection_table` shows who
+            is joined to whom.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> blocks = couple(reference_bridge(frequency=2.0), Pedestrian(), [25.0]).interconnected()
+        >>> [block.name for block in blocks.syslist]
+        ['mode0', 'walker0']
+        """
+        outputs = [[(f"mode{j}", f"ddz[{j}]", float(share)) for j, share in enumerate(row)] for row in self._sense]
+        return interconnect(
+            blocks_of(self.bridge, self.people, self.condensed.rows, self._drive, self.input_labels),
+            inplist=self.input_labels, inputs=self.input_labels, outlist=outputs, outputs=self.output_labels,
+            check_unused=False, name=self.name)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> OccupiedBridge:
+        return self.__reduce__()[0](*self.__reduce__()[1])
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return _rebuild, (self.bridge, self.people, self.positions, self.force_at, self.sense_at, self.name,
+                          self.input_labels, self.output_labels, self.state_labels)
+
+    def __str__(self) -> str:
+        signals = (("Inputs", self.input_labels), ("Outputs", self.output_labels), ("States", self.state_labels))
+        return "\n".join([f"<OccupiedBridge> {self.name}: {self.people}", f"on {self.bridge}",
+                          *(f"{kind} ({len(labels)}): {_shortened(labels)}" for kind, labels in signals)])
+
+    def _repr_eval_(self) -> str:
+        return f"<OccupiedBridge {self.name}: {self.input_labels} -> {self.output_labels}, {self.nstates} states>"
+
+
+def _rebuild(
+    bridge: Footbridge, people: Crowd, positions: Array, force_at: Array, sense_at: Array,
+    name: str, inputs: list[str], outputs: list[str], states: list[str],
+) -> OccupiedBridge:
+    system = OccupiedBridge(bridge, people, positions, force_at=force_at, sense_at=sense_at, name=name)
+    system.update_names(inputs=inputs, outputs=outputs, states=states)
+    return system
+
+
+def _crowd(people: Any, n: int) -> Crowd:
+    remedy = "give a Crowd, a Pedestrian or a sequence of Pedestrian"
+    if isinstance(people, Pedestrian):
+        return Crowd.of([people] * n)
+    if not isinstance(people, Crowd):
+        people = Crowd.of(check.instance("people", people, Sequence, remedy))
+    if len(people) != n:
+        raise ValueError(f"people and positions must be as many, got {len(people)} bodies and {n} positions; "
+                         "give one position per body")
+    return people
+
+
+def _labels(base: str, n: int) -> list[str]:
+    return [f"{base}[{i}]" for i in range(n)]
+
+
+def _shortened(labels: list[str]) -> str:
+    if len(labels) <= 12:
+        return str(labels)
+    return str(labels[:4])[:-1] + ", …, " + str(labels[-2:])[1:]

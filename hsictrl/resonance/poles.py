@@ -1,0 +1,34 @@
+"""Which pole of the occupied bridge is a mode's own."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsictrl.coupling import OccupiedBridge
+from hsictrl.resonance.curves import dynamic_stiffness_slope
+
+
+def dominant_pole(system: OccupiedBridge, index: int) -> complex:
+    """The oscillating pole p with the largest |residue/Re p| in the response on one mode's coordinate [rad/s]."""
+    poles = system.poles()
+    poles = poles[poles.imag > 0]
+    weights = [abs(_residue(system, pole, index) / pole.real) if pole.real else np.inf for pole in poles]
+    return complex(poles[int(np.argmax(weights))])
+
+
+def _residue(system: OccupiedBridge, pole: complex, index: int) -> float:
+    """Residue of s²[D⁻¹]_jj at a pole: s²v_j²/(vᵀD′v), v the null vector of D.
+
+    A body that no mode moves has a pole of its own, where D grows without bound instead: residue zero.
+    """
+    with np.errstate(all="ignore"):
+        stiffness, slope = system.dynamic_stiffness(pole)[0], dynamic_stiffness_slope(system, pole)
+    if not (np.isfinite(stiffness).all() and np.isfinite(slope).all()):
+        return 0.0
+    vector = _null_vector(stiffness)
+    return float(abs(pole**2 * vector[index]**2 / (vector @ slope @ vector)))
+
+
+def _null_vector(matrix: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    return np.asarray(np.linalg.svd(matrix)[2][-1].conj())

@@ -1,0 +1,101 @@
+"""Effective properties of many bridges under one crowd, which they share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.coupling import CondensedCrowd
+
+NODES, POINTS, STEPS = 400, 1200, 5
+
+
+def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tuple[Array, Array]:
+    """Effective frequency and damping (eq. 17) of single-mode bridges that differ in frequency and damping.
+
+    The crowd's apparent mass S(ω) does not depend on the bridge: it is tabulated once, and
+    1/|H|² = |1 + S − (ω_B/ω)² − 2iξ ω_B/ω|² is minimised for all bridges together.
+
+    Parameters
+    ----------
+    crowd : CondensedCrowd
+        The crowd on one mode.
+    frequencies : array_like, shape (f,)
+        Natural frequencies of the empty bridges [Hz].
+    dampings : array_like, shape (d,)
+        Their modal damping ratios [-].
+
+    Returns
+    -------
+    frequency : array, shape (f, d)
+        Effective frequencies [Hz].
+    damping : array, shape (f, d)
+        Effective damping ratios [-].
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.coupling import couple
+    >>> from hsictrl.pedestrian import Pedestrian
+    >>> occupied = couple(reference_bridge(), Pedestrian(), (np.arange(15) + 0.5) * 50 / 15)
+    >>> frequency, damping = effective_map(occupied.condensed, [2.0, 3.25], [0.005])
+    >>> print(frequency.round(4).ravel(), (100 * damping).round(3).ravel())
+    [1.9708 3.2422] [0.758 3.747]
+    """
+    omega_b = 2 * np.pi * check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give Hz")[:, None]
+    xi = check.numbers("dampings", dampings, least=0, below=1, ndim=1, remedy="give fractions, not percent")[None, :]
+    if crowd.rows.shape[1] != 1:
+        raise ValueError(f"the crowd must stand on one mode, got {crowd.rows.shape[1]}; "
+                         "use effective() for bridges with several")
+    band = _band(crowd, omega_b)
+    mass = _tabulated_mass(crowd, band)
+    start = _grid_minimum(mass, band, omega_b, xi)
+    omega = _refined(mass, start, omega_b, xi)
+    return omega / (2 * np.pi), np.sqrt(_inverse_square(mass, omega, omega_b, xi)[0]) / 2
+
+
+def _band(crowd: CondensedCrowd, omega_b: Array) -> tuple[float, float]:
+    """Where the peaks of all the bridges can lie [rad/s]; see `resonance.curves`."""
+    mass, bodies = float(crowd.apparent_mass(0)[0, 0, 0].real), crowd.people.omega
+    low = 1 / np.sqrt((1 + mass) / omega_b.min()**2 + 1 / np.min(bodies, initial=omega_b.min())**2)
+    return 0.5 * float(low), 2 * float(np.hypot(omega_b.max(), np.sqrt(1 + mass) * np.max(bodies, initial=0.0)))
+
+
+def _tabulated_mass(crowd: CondensedCrowd, band: tuple[float, float]) -> CubicSpline:
+    nodes = np.geomspace(0.9 * band[0], 1.1 * band[1], NODES)
+    return CubicSpline(nodes, 1 + crowd.apparent_mass(1j * nodes)[:, 0, 0])
+
+
+def _grid_minimum(mass: CubicSpline, band: tuple[float, float], omega_b: Array, xi: Array) -> Array:
+    """The best grid point for each bridge, moved to the vertex of the parabola through it and its neighbours."""
+    grid = np.geomspace(*band, POINTS)
+    ratio = omega_b / grid
+    table = mass(grid)
+    real, imaginary = (table.real - ratio**2)**2, table.imag - 2 * xi.T[:, :, None] * ratio
+    size = np.moveaxis(real + imaginary**2, 0, 1)
+    best = np.clip(np.argmin(size, axis=-1), 1, POINTS - 2)[..., None]
+    left, here, right = (np.take_along_axis(size, best + shift, -1)[..., 0] for shift in (-1, 0, 1))
+    shift = 0.5 * (left - right) / (left - 2 * here + right)
+    return np.asarray(grid[best[..., 0]] * (grid[1] / grid[0])**np.clip(shift, -1, 1))
+
+
+def _refined(mass: CubicSpline, omega: Array, omega_b: Array, xi: Array) -> Array:
+    """Newton's steps towards the zero of the slope."""
+    for _ in range(STEPS):
+        _, slope, bend = _inverse_square(mass, omega, omega_b, xi)
+        omega = omega - slope / bend
+    return omega
+
+
+def _inverse_square(mass: CubicSpline, omega: Array, omega_b: Array, xi: Array) -> tuple[Array, Array, Array]:
+    """g = |1/H|² on the mode's coordinate and its first two derivatives in ω."""
+    r = omega_b / omega
+    q = mass(omega) - r**2 - 2j * xi * r
+    q1 = mass(omega, 1) + (2 * r**2 + 2j * xi * r) / omega
+    q2 = mass(omega, 2) - (6 * r**2 + 4j * xi * r) / omega**2
+    dot = lambda a, b: (a * b.conj()).real  # noqa: E731
+    return dot(q, q), 2 * dot(q, q1), 2 * (dot(q1, q1) + dot(q, q2))
