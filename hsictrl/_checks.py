@@ -87,7 +87,8 @@ def _bound(
     if np.any(wrong):
         first = np.argwhere(wrong)[0]
         place = f"[{', '.join(map(str, first))}]" if array.ndim else ""
-        raise ValueError(f"{name}{place} must {_rule(above, least, below, most)}, got {array[tuple(first)]:g}; {remedy}")
+        rule, value = _rule(above, least, below, most), array[tuple(first)]
+        raise ValueError(f"{name}{place} must {rule}, got {value:g}; {remedy}")
 
 
 def _rule(above: float | None, least: float | None, below: float | None, most: float | None) -> str:

@@ -9,10 +9,10 @@ from typing import Any, final
 import control as ct
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr, ndtri
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._draws import truncated_normal
 
 PERCENT = "give a fraction, not percent"
 RULES: dict[str, dict[str, Any]] = {
@@ -184,7 +184,7 @@ class Crowd(_SprungBody):
     direction: NDArray[np.str_] = "vertical"  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        values = [check.numbers(name, getattr(self, name), **rule) for name, rule in RULES.items()]
+        values: list[NDArray[Any]] = [check.numbers(name, getattr(self, name), **rule) for name, rule in RULES.items()]
         values.append(_directions(self.direction))
         for name, value in zip(self.__slots__, _same_length(values), strict=True):
             object.__setattr__(self, name, value)
@@ -209,7 +209,8 @@ class Crowd(_SprungBody):
         """
         for body in bodies:
             check.instance("bodies", body, Pedestrian, "give a sequence of Pedestrian")
-        return cls(**{name: [getattr(body, name) for body in bodies] for name in cls.__slots__})
+        values: dict[str, Any] = {name: [getattr(body, name) for body in bodies] for name in cls.__slots__}
+        return cls(**values)
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -360,18 +361,14 @@ class Population:
         check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
         draws = rng.random((n, 3)).T
         return Crowd(
-            frequency=_truncated(self.frequency, np.inf, draws[0]), damping=_truncated(self.damping, 1.0, draws[1]),
-            mass=_truncated(self.mass, np.inf, draws[2]), sprung_ratio=np.full(n, self.sprung_ratio),
-            direction=np.full(n, self.direction))
+            frequency=truncated_normal(*_pair(self.frequency), draws[0]),
+            damping=truncated_normal(*_pair(self.damping), draws[1], high=1.0),
+            mass=truncated_normal(*_pair(self.mass), draws[2]),
+            sprung_ratio=np.full(n, self.sprung_ratio), direction=np.full(n, self.direction))
 
 
-def _truncated(normal: Any, high: float, draws: Array) -> Array:
-    """Quantiles of a normal truncated to (0, high)."""
-    mean, spread = normal
-    if spread == 0:
-        return np.full_like(draws, mean)
-    low_p, high_p = ndtr(-mean / spread), ndtr((high - mean) / spread)
-    return np.asarray(mean + spread * ndtri(low_p + (high_p - low_p) * draws))
+def _pair(normal: float | tuple[float, float]) -> tuple[float, float]:
+    return normal if isinstance(normal, tuple) else (normal, 0.0)
 
 
 def _mean_and_spread(name: str, value: Any, most: float) -> tuple[float, float]:
@@ -390,7 +387,7 @@ def _directions(value: Any) -> NDArray[np.str_]:
     return directions
 
 
-def _same_length(values: Sequence[Any]) -> list[NDArray[Any]]:
+def _same_length(values: Sequence[Any]) -> tuple[NDArray[Any], ...]:
     try:
         arrays = np.broadcast_arrays(*map(np.atleast_1d, values))
     except ValueError:

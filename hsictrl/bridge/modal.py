@@ -195,7 +195,7 @@ class Footbridge:
         >>> bridge = Footbridge.beam(spans=[20.0, 30.0, 20.0], width=3.0, mass=70e3, frequency=2.5,
         ...                          damping=0.005, n_modes=3)
         >>> [round(mode.frequency, 2) for mode in bridge.modes]
-        [2.5, 4.76, 6.06]
+        [2.5, 4.71, 5.52]
         """
         shapes = beam_modes(spans, ends=ends, n_modes=n_modes)
         return cls._uniform(shapes, float(np.sum(spans)), width, mass, frequency, damping)
@@ -305,8 +305,9 @@ class Footbridge:
 
         Examples
         --------
-        >>> float(reference_bridge(frequency=2.0).participation([25.0])[0, 0] ** -2)
-        25000.0
+        >>> reference_bridge(frequency=2.0).participation([0.0, 25.0]).round(6)      # sin(πx/L)/√25 t
+        array([[0.      ],
+               [0.006325]])
         """
         x, y = check.points("positions", positions).T
         return np.column_stack([
@@ -378,7 +379,8 @@ def reference_bridge(*, frequency: float = 2.0, damping: float = 0.005, modal_ma
       mode 0: 3.250 Hz, 0.50 %, 25000 kg
     """
     modal_mass = check.number("modal_mass", modal_mass, above=0, remedy="give kg")
-    return Footbridge.simply_supported(length=50.0, width=3.0, mass=2 * modal_mass, frequency=frequency, damping=damping)
+    return Footbridge.simply_supported(
+        length=50.0, width=3.0, mass=2 * modal_mass, frequency=frequency, damping=damping)
 
 
 def _labels(base: str, n: int) -> list[str]:

@@ -203,6 +203,30 @@ class OccupiedBridge(ct.StateSpace):
                 motion = np.full((len(s), *self._drive.T.shape), np.nan + 0j)
             return np.asarray(np.moveaxis(s[:, None, None]**2 * (self._sense @ motion), 0, -1))
 
+    def respond(self, s: Complex, modal_forces: Any) -> Complex:
+        """Accelerations under modal forces, in the Laplace domain: a crowd's forces move, but act through few modes.
+
+        Parameters
+        ----------
+        s : array, shape (w,)
+            Laplace variable [rad/s].
+        modal_forces : array, shape (n_m, w)
+            Transforms of the modal forces Φᵀp in mass-normalised coordinates [N s/√kg].
+
+        Returns
+        -------
+        array, shape (outputs, w)
+            Transforms of the accelerations at `sense_at` [m/s].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> couple(reference_bridge()).respond(1j * np.ones(3), np.ones((1, 3))).shape
+        (1, 3)
+        """
+        motion = np.linalg.solve(self.dynamic_stiffness(s), modal_forces.T[:, :, None])[:, :, 0]
+        return np.asarray(self._sense @ (s**2 * motion.T))
+
     def interconnected(self) -> ct.LinearICSystem:
         """Give the same system as blocks: one named block per mode and per walker, joined by signal names.
 

@@ -119,7 +119,7 @@ def effective(
     >>> from hsictrl.pedestrian import Pedestrian
     >>> x = (np.arange(15) + 0.5) * 50 / 15
     >>> print(effective(couple(reference_bridge(frequency=2.0), Pedestrian(), x)))
-    1.9708 Hz, 0.758 % (peak), |H| = 0.002638 m/s² per N
+    1.9709 Hz, 0.758 % (peak), |H| = 0.002638 m/s² per N
     """
     check.choice("method", method, METHODS)
     curve = _curve(occupied(system), mode)

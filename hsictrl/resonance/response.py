@@ -41,7 +41,7 @@ def frf(
     >>> from hsictrl.bridge import reference_bridge
     >>> response = frf(reference_bridge(frequency=2.0, damping=0.005), [1.0, 2.0, 3.0])
     >>> print(abs(response.frdata[0, 0]).round(8))     # 1/(2 ξ m) = 0.004 at resonance (eq. 16)
-    [1.333e-05 4.000e-03 7.200e-05]
+    [1.333e-05 4.000e-03 7.199e-05]
     """
     hertz = check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give an increasing array of Hz")
     if not len(hertz) or np.any(np.diff(hertz) <= 0):

@@ -44,7 +44,7 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
     >>> occupied = couple(reference_bridge(), Pedestrian(), (np.arange(15) + 0.5) * 50 / 15)
     >>> frequency, damping = effective_map(occupied.condensed, [2.0, 3.25], [0.005])
     >>> print(frequency.round(4).ravel(), (100 * damping).round(3).ravel())
-    [1.9708 3.2422] [0.758 3.747]
+    [1.9709 3.2134] [0.758 2.147]
     """
     omega_b = 2 * np.pi * check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give Hz")[:, None]
     xi = check.numbers("dampings", dampings, least=0, below=1, ndim=1, remedy="give fractions, not percent")[None, :]

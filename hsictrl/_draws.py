@@ -1,0 +1,19 @@
+"""Random variables from standard uniform numbers, so that the same draws serve at other parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from hsictrl._checks import Array
+
+
+def truncated_normal(mean: Any, spread: Any, draws: Array, *, high: float = np.inf) -> Array:
+    """Quantiles of normals truncated to (0, high), at uniform `draws` in [0, 1); without spread, the mean."""
+    if np.all(spread == 0):
+        return np.broadcast_to(np.asarray(mean, dtype=float), np.shape(draws)).copy()
+    # counted from the upper tail, since 1 − draws is never zero, where the quantile is infinite
+    above_zero, above_high = ndtr(mean / spread), ndtr((mean - high) / spread)
+    return np.asarray(mean - spread * ndtri(above_high + (above_zero - above_high) * (1 - draws)))

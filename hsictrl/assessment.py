@@ -1,0 +1,323 @@
+"""From a bridge and a flow of people to a design acceleration, with and without interaction, and a comfort class."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import Any, final
+
+import numpy as np
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.bridge import Footbridge
+from hsictrl.comfort import DesignResponse, comfort_class, design_acceleration
+from hsictrl.coupling import couple
+from hsictrl.crowd import CrowdFlow
+from hsictrl.prediction import predict, tune
+from hsictrl.resonance import effective
+from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule, monte_carlo
+from hsictrl.walking import WalkingForce, ZivanovicForce
+
+PERSON_MASS = 70.0   # kg, of the guides
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PeakTrial:
+    """A trial: traffic tuned to a model's own resonance, and the peak acceleration it causes (sections 2.2 and 4.3).
+
+    Parameters
+    ----------
+    model : str
+        "MF" or "PMC".
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        The stream of people.
+    force : WalkingForce
+        Their walking force.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> trial = PeakTrial(model="PMC", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
+    >>> bool(trial(np.random.default_rng(1)) > 0)     # m/s²
+    True
+    """
+
+    model: str
+    bridge: Footbridge
+    flow: CrowdFlow
+    force: WalkingForce = field(default_factory=ZivanovicForce)
+
+    def __call__(self, rng: np.random.Generator) -> float:
+        traffic = self.flow.sample(self.bridge, rng=rng, force=self.force)
+        if self.flow.step_frequency is None:
+            traffic = tune(self.model, self.bridge, traffic)
+        return predict(self.model, self.bridge, traffic).peak_acceleration
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EffectiveTrial:
+    """A trial: a standing crowd, and the effective frequency [Hz] and damping [-] of the bridge (section 3.1).
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        Says how many people there are and who.
+    mode : int
+        Which mode of the bridge, from 0 [-].
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> EffectiveTrial(bridge=reference_bridge(), flow=CrowdFlow(persons=15))(np.random.default_rng(1)).shape
+    (2,)
+    """
+
+    bridge: Footbridge
+    flow: CrowdFlow
+    mode: int = 0
+
+    def __call__(self, rng: np.random.Generator) -> Array:
+        people, places = self.flow.crowd(self.bridge, rng)
+        return np.array([*effective(couple(self.bridge, people, places), mode=self.mode)])
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Assessment:
+    """What an assessment found for one flow of people.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        The stream of people.
+    effective : Ensemble
+        Effective frequency [Hz] and damping ratio [-] of the occupied bridge: means.
+    without, within : Ensemble
+        Peak acceleration without (MF) and with (PMC) human-structure interaction: a percentile [m/s²].
+    guide : DesignResponse
+        Design acceleration of HiVoSS for the same density [m/s²].
+    remarks : tuple of str
+        What a reader of the numbers should know.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> found = assess(reference_bridge(), CrowdFlow(persons=15), rule=PercentileRule(tolerance=0.5))
+    >>> found.reduction > 1
+    True
+    """
+
+    bridge: Footbridge
+    flow: CrowdFlow
+    effective: Ensemble
+    without: Ensemble
+    within: Ensemble
+    guide: DesignResponse
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def reduction(self) -> float:
+        """Reduction factor R_HSI (eq. 18) [-]."""
+        return float(self.without.estimate / self.within.estimate)
+
+    @property
+    def reduction_interval(self) -> tuple[float, float]:
+        """Interval of R_HSI from the ends of both intervals; it covers at least as much as both do together [-]."""
+        (low, high), (least, most) = self.without.interval, self.within.interval
+        return float(low / most), float(high / least)
+
+    @property
+    def classes(self) -> tuple[str, str]:
+        """Comfort class without and with interaction."""
+        return comfort_class(float(self.without.estimate)), comfort_class(float(self.within.estimate))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Export with the units in the keys.
+
+        Returns
+        -------
+        dict
+            Plain numbers and strings, ready for JSON, a CSV row or a data frame.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> found = assess(reference_bridge(), CrowdFlow(persons=15), rule=PercentileRule(tolerance=0.5))
+        >>> found.to_dict()["persons"]
+        15
+        """
+        frequency, damping = np.ravel(self.effective.estimate)
+        return {
+            "density_per_m2": self.flow.density_on(self.bridge), "persons": self.flow.persons_on(self.bridge),
+            "f_eff_hz": float(frequency), **_ends("f_eff", "hz", self.effective.interval, 0),
+            "xi_eff": float(damping), **_ends("xi_eff", "", self.effective.interval, 1),
+            "effective_trials": self.effective.n_trials,
+            **_ensemble("mf", self.without), **_ensemble("pmc", self.within),
+            "r_hsi": self.reduction, **_ends("r_hsi", "", self.reduction_interval, 0),
+            "class_mf": self.classes[0], "class_pmc": self.classes[1],
+            "hivoss_m_per_s2": self.guide.acceleration, "remarks": "; ".join(self.remarks)}
+
+
+def assess(
+    bridge: Footbridge, flow: CrowdFlow, *, force: WalkingForce | None = None,
+    rule: PercentileRule = PercentileRule(), seed: int = 1, executor: Executor | None = None,  # noqa: B008
+) -> Assessment:
+    """Assess a footbridge under a flow of people: damping, accelerations, comfort class.
+
+    Both models see the same people, each tuned to its own resonance (unless the flow sets the step
+    frequency by hand).
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge; its first mode is the one in resonance.
+    flow : CrowdFlow
+        The stream of people.
+    force : WalkingForce, optional
+        Walking force; the narrow-band `ZivanovicForce` if not given.
+    rule : PercentileRule
+        Which percentile of the peak acceleration, and when it has settled [-].
+    seed : int
+        Seed of all trials [-].
+    executor : concurrent.futures.Executor, optional
+        Where trials run; in place if not given.
+
+    Returns
+    -------
+    Assessment
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> found = assess(reference_bridge(), CrowdFlow(persons=15), rule=PercentileRule(tolerance=0.5))
+    >>> found.classes[1]
+    'CL3'
+    """
+    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
+    check.instance("rule", rule, PercentileRule, "use PercentileRule(percentile=…, tolerance=…)")
+    force = ZivanovicForce() if force is None else force
+    peaks = {model: monte_carlo(
+        PeakTrial(model=model, bridge=bridge, flow=flow, force=force), rule=rule, seed=seed, executor=executor,
+        label=f"{flow}, {model}") for model in ("MF", "PMC")}
+    found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor)
+    return Assessment(bridge=bridge, flow=flow, effective=found, without=peaks["MF"], within=peaks["PMC"],
+                      guide=guide_value(bridge, flow), remarks=_remarks(bridge, flow, peaks))
+
+
+def study_effective(
+    bridge: Footbridge, flow: CrowdFlow, *, rule: StopRule | None = None, mode: int = 0, seed: int = 1,
+    executor: Executor | None = None,
+) -> Ensemble:
+    """Effective frequency [Hz] and damping [-] of a mode under standing crowds drawn from a flow (section 3.3).
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        Says how many people there are and who.
+    rule : StopRule, optional
+        When the study ends; when mean, 5 % and 95 % of both quantities have settled if not given.
+    mode : int
+        Which mode of the bridge, from 0 [-].
+    seed : int
+        Seed of all trials [-].
+    executor : concurrent.futures.Executor, optional
+        Where trials run; in place if not given.
+
+    Returns
+    -------
+    Ensemble
+        Two columns: f_eff [Hz] and ξ_eff [-].
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> ensemble = study_effective(reference_bridge(), CrowdFlow(persons=15), rule=MeanRule())
+    >>> ensemble.samples.shape[1]
+    2
+    """
+    bridge.mode(mode)
+    rule = effective_rule() if rule is None else rule
+    trial = EffectiveTrial(bridge=bridge, flow=flow, mode=mode)
+    return monte_carlo(trial, rule=rule, seed=seed, executor=executor, label=f"{flow}, effective")
+
+
+def effective_rule(tolerance: float = 0.05) -> AllRules:
+    """Mean, 5 % and 95 % percentile must all settle: what figure 4 shows.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest relative distance of an interval's ends from the estimate [-].
+
+    Returns
+    -------
+    AllRules
+
+    Examples
+    --------
+    >>> len(effective_rule().labels)
+    3
+    """
+    return AllRules((MeanRule(tolerance=tolerance), PercentileRule(percentile=5.0, tolerance=tolerance),
+                     PercentileRule(percentile=95.0, tolerance=tolerance)))
+
+
+def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", mode: int = 0) -> DesignResponse:
+    """Design acceleration of the guides for one mode and the same density.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        The stream of people.
+    guide : {"hivoss", "setra"}
+        Which guide's load reduction.
+    mode : int
+        Which mode of the bridge, from 0 [-].
+
+    Returns
+    -------
+    DesignResponse
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> round(guide_value(reference_bridge(frequency=2.0, damping=0.005), CrowdFlow(density=0.5)).acceleration, 3)
+    4.268
+    """
+    resonant, density = bridge.mode(mode), flow.density_on(bridge)
+    return design_acceleration(
+        frequency=resonant.frequency, damping=resonant.damping, modal_mass=resonant.modal_mass, density=density,
+        area=bridge.area, loaded_area=bridge.area * resonant.shape.mean_absolute,
+        crowd_modal_mass=PERSON_MASS * density * bridge.area * resonant.shape.mean_square, guide=guide)
+
+
+def _remarks(bridge: Footbridge, flow: CrowdFlow, peaks: dict[str, Ensemble]) -> tuple[str, ...]:
+    unsettled = tuple(f"{model}: {one.reason}" for model, one in peaks.items() if not one.converged)
+    drawn = flow.sample(bridge, rng=np.random.default_rng(0)).remarks
+    return drawn + unsettled
+
+
+def _ends(name: str, unit: str, interval: Any, index: int) -> dict[str, float]:
+    ends = [np.ravel(end) for end in interval] if np.ndim(interval[0]) else [interval[:1], interval[1:]]
+    suffix = f"_{unit}" if unit else ""
+    return {f"{name}_{side}{suffix}": float(end[index]) for side, end in zip(("low", "high"), ends, strict=True)}
+
+
+def _ensemble(name: str, ensemble: Ensemble) -> dict[str, Any]:
+    return {f"a_{name}_m_per_s2": float(ensemble.estimate), f"a_{name}_low_m_per_s2": float(ensemble.interval[0]),
+            f"a_{name}_high_m_per_s2": float(ensemble.interval[1]), f"a_{name}_trials": ensemble.n_trials,
+            f"a_{name}_converged": ensemble.converged}

@@ -1,0 +1,200 @@
+"""Walkers, the window in which they are observed, and the crowd that stands for them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import final
+
+import numpy as np
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.bridge import Footbridge
+from hsictrl.crowd.walkers import Walker, Walkers
+from hsictrl.pedestrian import Crowd
+
+WALKING_RANGE = (1.0, 2.5)
+
+
+@final
+class Traffic:
+    """Walkers on their way over the bridge, drawn by `CrowdFlow.sample` or made by hand.
+
+    Parameters
+    ----------
+    walkers : sequence of Walker, or Walkers
+        Who crosses.
+    window : (float, float), optional
+        Start and end of the time that is observed; from the first arrival to the last departure
+        if not given [s].
+    rng : numpy.random.Generator, optional
+        Source of randomness, for walkers made by hand whose forces draw any.
+    target : float, optional
+        Step frequency f_l about which the walkers are tuned; the mean if not given [Hz].
+    standing : (Crowd, array of shape (n, 2)), optional
+        Bodies and places [m] of the crowd that stands for the moving one in a pseudo-moving crowd; the
+        walkers on the deck in the middle of the window if not given.
+
+    Examples
+    --------
+    >>> from hsictrl.walking import HarmonicForce
+    >>> walker = Walker(force=HarmonicForce([0.43, 0.08]), step_frequency=2.0, speed=1.25)
+    >>> print(Traffic([walker]))
+    1 walker at 2.00 Hz
+    """
+
+    __slots__ = ("_standing", "_target", "walkers", "window")
+
+    def __init__(
+        self, walkers: Sequence[Walker] | Walkers, *, window: tuple[float, float] | None = None,
+        rng: np.random.Generator | None = None, target: float | None = None,
+        standing: tuple[Crowd, Array] | None = None,
+    ) -> None:
+        self.walkers = walkers if isinstance(walkers, Walkers) else _by_hand(walkers, rng)
+        self.window = None if window is None else _window(window)
+        self._target, self._standing = target, standing
+
+    def __str__(self) -> str:
+        n = len(self.walkers)
+        return f"{n} walker{'s' if n > 1 else ''} at {self.target:.2f} Hz"
+
+    @property
+    def target(self) -> float:
+        """Step frequency f_l about which the walkers step [Hz]."""
+        return float(self.walkers.step_frequency.mean()) if self._target is None else self._target
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the results should know, in sentences."""
+        low, high = WALKING_RANGE
+        if low <= self.target <= high:
+            return ()
+        return (f"the mean step frequency {self.target:.2f} Hz lies outside {low}–{high} Hz, where people walk",)
+
+    def tuned(self, step_frequency: float) -> Traffic:
+        """The same walkers with step frequencies about another mean; forces are rebuilt from the same draws.
+
+        Parameters
+        ----------
+        step_frequency : float
+            New mean f_l [Hz].
+
+        Returns
+        -------
+        Traffic
+
+        Raises
+        ------
+        ValueError
+            If a walker would have to step backwards.
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> Traffic([walker]).tuned(1.9).walkers.step_frequency
+        array([1.9])
+        """
+        mean = check.number("step_frequency", step_frequency, above=0, remedy="give the mean step frequency in Hz")
+        moved = mean + (self.walkers.step_frequency - self.target)
+        if np.any(moved <= 0):
+            k = int(np.argmin(moved))
+            raise ValueError(f"every step frequency must be above 0, got {moved[k]:.3g} Hz for walker {k} tuned about "
+                             f"{mean:g} Hz; tune to a higher frequency, or draw with less spread")
+        return self._with(self.walkers.at_step_frequency(moved), mean)
+
+    def since(self, time: float) -> Traffic:
+        """Those who arrive at or after a time, and the same observed window.
+
+        Parameters
+        ----------
+        time : float
+            Earliest arrival [s].
+
+        Returns
+        -------
+        Traffic
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> early, late = (Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, arrival=t)
+        ...                for t in (0.0, 5.0))
+        >>> len(Traffic([early, late]).since(1.0).walkers)
+        1
+        """
+        return self._with(self.walkers.part(self.walkers.arrival >= time), self.target)
+
+    def observed(self, bridge: Footbridge) -> tuple[float, float]:
+        """Start and end of the observed time.
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge, whose length says when the last walker has left.
+
+        Returns
+        -------
+        (float, float)
+            [s]
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> Traffic([walker]).observed(reference_bridge())
+        (0.0, 40.0)
+        """
+        if self.window is not None:
+            return self.window
+        departure = self.walkers.arrival + bridge.length / self.walkers.speed
+        return float(self.walkers.arrival.min()), float(departure.max())
+
+    def standing_on(self, bridge: Footbridge) -> tuple[Crowd, Array]:
+        """The crowd that stands for the moving one in a pseudo-moving crowd (section 2.4).
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge.
+
+        Returns
+        -------
+        Crowd
+            The bodies.
+        array, shape (n, 2)
+            Where they stand [m].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> people, places = Traffic([walker]).standing_on(reference_bridge())
+        >>> len(people), places
+        (1, array([[25.,  0.]]))
+        """
+        if self._standing is not None:
+            return self._standing
+        x = self.walkers.position([np.mean(self.observed(bridge))])[:, 0]
+        present = (x >= 0) & (x <= bridge.length)
+        places = np.column_stack([x, self.walkers.offset])[present]
+        return self.walkers.bodies.part(present), places
+
+    def _with(self, walkers: Walkers, target: float) -> Traffic:
+        return Traffic(walkers, window=self.window, target=target, standing=self._standing)
+
+
+def _by_hand(walkers: Sequence[Walker], rng: np.random.Generator | None) -> Walkers:
+    if isinstance(walkers, Sequence) and not walkers:
+        raise ValueError("traffic must hold at least one walker, got none; use couple(bridge) for an empty deck")
+    return Walkers.of(walkers, rng)
+
+
+def _window(window: tuple[float, float]) -> tuple[float, float]:
+    ends = check.numbers("window", window, ndim=1, remedy="give (start, end) in s")
+    if len(ends) != 2 or ends[0] >= ends[1]:
+        raise ValueError(f"window must be (start, end) with start before end, got {tuple(ends.tolist())}; "
+                         "swap or widen it")
+    return float(ends[0]), float(ends[1])

@@ -1,0 +1,284 @@
+"""People on their way: a body, a walking force, and a straight path along the deck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, final
+
+import control as ct
+import numpy as np
+from numpy.typing import NDArray
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.pedestrian import Crowd, Pedestrian
+from hsictrl.walking import ForceLines, WalkingForce
+
+BY_HAND = {"least": 0.5, "most": 3.5, "remedy": "people step at 0.5 to 3.5 Hz; give f_s, not a bridge frequency"}
+Indices = NDArray[np.intp]
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Walker:
+    """One person who crosses the bridge.
+
+    Parameters
+    ----------
+    body : Pedestrian
+        The body.
+    force : WalkingForce
+        The walking force on rigid ground.
+    weight : float
+        Weight that drives the walking force, G; 700 N in the paper, beside a body of 70 kg [N].
+    step_frequency : float
+        Step frequency f_s, 0.5 to 3.5 [Hz].
+    speed : float
+        Walking speed v_s [m/s].
+    arrival : float
+        Time at which the walker steps on, t_a [s].
+    offset : float
+        Lateral position y on the deck, 0 on the centre line [m].
+
+    Examples
+    --------
+    >>> from hsictrl.walking import HarmonicForce
+    >>> walker = Walker(force=HarmonicForce([0.43, 0.08]), step_frequency=2.0, speed=1.25)
+    >>> walker.weight, walker.arrival
+    (700.0, 0.0)
+    """
+
+    body: Pedestrian = field(default_factory=Pedestrian)
+    force: WalkingForce
+    weight: float = 700.0
+    step_frequency: float
+    speed: float
+    arrival: float = 0.0
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        check.instance("body", self.body, Pedestrian, "use hsictrl.Pedestrian()")
+        check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
+        check.number("weight", self.weight, above=0, remedy="give N")
+        check.number("step_frequency", self.step_frequency, **BY_HAND)  # type: ignore[arg-type]
+        check.number("speed", self.speed, above=0, most=10, remedy="give m/s, at most 10")
+        check.number("arrival", self.arrival, remedy="give s")
+        check.number("offset", self.offset, remedy="give m")
+
+    def ss(self, *, name: str = "walker") -> ct.StateSpace:
+        """Give the walker's body as a block, see `Pedestrian.ss`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the block.
+
+        Returns
+        -------
+        control.StateSpace
+            Inputs y, v, a of the contact point, output F [N].
+
+        Examples
+        --------
+        >>> from hsictrl.walking import YoungForce
+        >>> Walker(force=YoungForce(), step_frequency=2.0, speed=1.25).ss(name="anna").name
+        'anna'
+        """
+        return self.body.ss(name=name)
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Walkers:
+    """Walkers as arrays, in the order in which they are given.
+
+    Parameters
+    ----------
+    bodies : Crowd
+        Their n bodies.
+    forces : sequence of WalkingForce
+        The distinct force models among them.
+    model : array of int, shape (n,)
+        Which of `forces` each walker has [-].
+    draws : sequence of array, one of shape (n_i, n_draws) per model
+        Standard uniform numbers from which each model makes its walkers' forces [-].
+    weight, step_frequency, speed, arrival, offset : array, shape (n,)
+        As in `Walker` [N, Hz, m/s, s, m].
+
+    Examples
+    --------
+    >>> from hsictrl.walking import HarmonicForce
+    >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+    >>> walkers = Walkers.of([walker, walker])
+    >>> len(walkers), walkers.position([4.0]).ravel()
+    (2, array([5., 5.]))
+    """
+
+    bodies: Crowd
+    forces: Sequence[WalkingForce]
+    model: Indices
+    draws: Sequence[Array]
+    weight: Array
+    step_frequency: Array
+    speed: Array
+    arrival: Array
+    offset: Array
+
+    def __post_init__(self) -> None:
+        for name in ("weight", "step_frequency", "speed"):
+            values = check.numbers(name, getattr(self, name), above=0, remedy=f"give one {name} per walker")
+            object.__setattr__(self, name, values)
+        for name in ("arrival", "offset"):
+            object.__setattr__(self, name, check.numbers(name, getattr(self, name), remedy="give one per walker"))
+        lengths = {name: len(getattr(self, name)) for name in ("bodies", "model", *ARRAYS)}
+        if len(set(lengths.values())) > 1:
+            raise ValueError(f"walkers' arrays must have the same length, got {lengths}; give one value per walker")
+
+    @classmethod
+    def of(cls, walkers: Sequence[Walker], rng: np.random.Generator | None = None) -> Walkers:
+        """Gather single walkers.
+
+        Parameters
+        ----------
+        walkers : sequence of Walker
+            The walkers.
+        rng : numpy.random.Generator, optional
+            Source of randomness, for forces that draw any.
+
+        Returns
+        -------
+        Walkers
+
+        Examples
+        --------
+        >>> from hsictrl.walking import YoungForce
+        >>> walker = Walker(force=YoungForce(), step_frequency=2.0, speed=1.25)
+        >>> len(Walkers.of([walker], rng=np.random.default_rng(1)))
+        1
+        """
+        for walker in check.instance("walkers", walkers, Sequence, "give a list of Walker"):
+            check.instance("walkers", walker, Walker, "give a list of Walker")
+        forces = list(dict.fromkeys(walker.force for walker in walkers))
+        model = np.array([forces.index(walker.force) for walker in walkers], dtype=np.intp)
+        draws = [_draws(force, int(np.sum(model == i)), rng) for i, force in enumerate(forces)]
+        own = {name: np.array([getattr(walker, name) for walker in walkers], float) for name in ARRAYS}
+        bodies = Crowd.of([walker.body for walker in walkers])
+        return cls(bodies=bodies, forces=tuple(forces), model=model, draws=tuple(draws), **own)
+
+    def __len__(self) -> int:
+        return len(self.model)
+
+    def __getitem__(self, index: int) -> Walker:
+        own = {name: float(getattr(self, name)[index]) for name in ARRAYS}
+        return Walker(body=self.bodies[index], force=self.forces[self.model[index]], **own)
+
+    def __iter__(self) -> Iterator[Walker]:
+        return (self[i] for i in range(len(self)))
+
+    def part(self, which: Any) -> Walkers:
+        """Some of the walkers, with the same forces.
+
+        Parameters
+        ----------
+        which : slice, index array or mask
+            What numpy takes to choose from an array of n.
+
+        Returns
+        -------
+        Walkers
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+        >>> len(Walkers.of([walker] * 3).part([0, 2]))
+        2
+        """
+        kept = np.arange(len(self))[which]
+        row = self._row_in_model()
+        draws = tuple(table[row[kept[self.model[kept] == i]]] for i, table in enumerate(self.draws))
+        return Walkers(bodies=self.bodies.part(kept), forces=self.forces, model=self.model[kept], draws=draws,
+                       **{name: getattr(self, name)[kept] for name in ARRAYS})
+
+    def at_step_frequency(self, step_frequency: Array) -> Walkers:
+        """The same walkers at other step frequencies; their forces follow from the same draws.
+
+        Parameters
+        ----------
+        step_frequency : array, shape (n,)
+            New step frequencies [Hz].
+
+        Returns
+        -------
+        Walkers
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+        >>> Walkers.of([walker]).at_step_frequency(np.array([1.9])).step_frequency
+        array([1.9])
+        """
+        own = {name: getattr(self, name) for name in self.__slots__}
+        return Walkers(**own | {"step_frequency": step_frequency})
+
+    def position(self, times: Any) -> Array:
+        """Where the walkers are along the line of the deck: x = v(t − t_a); off the deck too.
+
+        Parameters
+        ----------
+        times : array_like, shape (m,)
+            Times [s].
+
+        Returns
+        -------
+        array, shape (n, m)
+            Position x [m].
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, arrival=1.0)
+        >>> Walkers.of([walker]).position([1.0, 5.0])
+        array([[0., 5.]])
+        """
+        times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
+        return self.speed[:, None] * np.subtract.outer(times, self.arrival).T
+
+    def lines(self) -> list[tuple[Indices, ForceLines]]:
+        """Walking forces of all walkers, model by model.
+
+        Returns
+        -------
+        list of (array of int, ForceLines)
+            Indices of the walkers who share a model [-], and their forces [N].
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+        >>> [(who, force)] = Walkers.of([walker, walker]).lines()
+        >>> who, force.n_walkers
+        (array([0, 1]), 2)
+        """
+        members = [np.flatnonzero(self.model == i) for i in range(len(self.forces))]
+        return [(who, force.lines(self.step_frequency[who], self.weight[who], draws))
+                for who, force, draws in zip(members, self.forces, self.draws, strict=True) if len(who)]
+
+    def _row_in_model(self) -> Indices:
+        """Row of each walker in the draws of its model."""
+        row = np.empty(len(self), dtype=np.intp)
+        for i in range(len(self.forces)):
+            row[self.model == i] = np.arange(np.sum(self.model == i))
+        return row
+
+
+ARRAYS = ("weight", "step_frequency", "speed", "arrival", "offset")
+
+
+def _draws(force: WalkingForce, n: int, rng: np.random.Generator | None) -> Array:
+    if rng is None and force.n_draws:
+        raise ValueError(f"{type(force).__name__} draws {force.n_draws} random numbers per walker, got no generator; "
+                         "give rng=numpy.random.default_rng(seed)")
+    return rng.random((n, force.n_draws)) if rng is not None else np.empty((n, 0))

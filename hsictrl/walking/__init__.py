@@ -1,0 +1,8 @@
+"""The force of one walker on rigid ground, as a function of time."""
+
+from hsictrl.walking.lines import ForceLines
+from hsictrl.walking.model import WalkingForce
+from hsictrl.walking.narrowband import ZivanovicForce, kerr_factor
+from hsictrl.walking.periodic import HarmonicForce, YoungForce
+
+__all__ = ["ForceLines", "HarmonicForce", "WalkingForce", "YoungForce", "ZivanovicForce", "kerr_factor"]
