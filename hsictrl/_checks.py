@@ -111,6 +111,14 @@ def _short(value: Any) -> str:
 DIRECTIONS = ("vertical", "lateral")
 
 
+def directions(values: Any) -> NDArray[np.str_]:
+    """Return directions of motion, one or many, as an array of str; refuse any that is not known."""
+    array = np.array(values, dtype=np.str_)
+    for one in np.unique(array):
+        choice("direction", str(one), DIRECTIONS)
+    return array
+
+
 def points(name: str, values: Any) -> Array:
     """Return places on a deck as an (n, 2) array of x and y [m]; a plain list of x lies on the centre line."""
     remedy = "give x [m], or pairs (x, y) [m]"

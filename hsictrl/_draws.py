@@ -10,10 +10,15 @@ from scipy.special import ndtr, ndtri
 from hsictrl._checks import Array
 
 
+SMALLEST_DRAW = 2.0**-53     # above zero, of numpy.random.Generator.random
+
+
 def truncated_normal(mean: Any, spread: Any, draws: Array, *, high: float = np.inf) -> Array:
     """Quantiles of normals truncated to (0, high), at uniform `draws` in [0, 1); without spread, the mean."""
     if np.all(spread == 0):
         return np.broadcast_to(np.asarray(mean, dtype=float), np.shape(draws)).copy()
-    # counted from the upper tail, since 1 − draws is never zero, where the quantile is infinite
+    # counted from the upper tail, since 1 − draws is never zero; a draw of exactly zero, whose quantile is not
+    # positive, counts as the smallest other one
     above_zero, above_high = ndtr(mean / spread), ndtr((mean - high) / spread)
-    return np.asarray(mean - spread * ndtri(above_high + (above_zero - above_high) * (1 - draws)))
+    upper = 1 - np.maximum(draws, SMALLEST_DRAW)
+    return np.asarray(mean - spread * ndtri(above_high + (above_zero - above_high) * upper))

@@ -14,7 +14,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.comfort import DesignResponse, comfort_class, design_acceleration
 from hsictrl.coupling import couple
 from hsictrl.crowd import CrowdFlow
-from hsictrl.prediction import predict, tune
+from hsictrl.prediction import MODELS, predict, predict_tuned, tune
 from hsictrl.resonance import effective
 from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
@@ -51,11 +51,15 @@ class PeakTrial:
     flow: CrowdFlow
     force: WalkingForce = field(default_factory=ZivanovicForce)
 
+    def __post_init__(self) -> None:
+        check.choice("model", self.model, MODELS)
+        _check_case(self.bridge, self.flow)
+        check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
+
     def __call__(self, rng: np.random.Generator) -> float:
         traffic = self.flow.sample(self.bridge, rng=rng, force=self.force)
-        if self.flow.step_frequency is None:
-            traffic = tune(self.model, self.bridge, traffic)
-        return predict(self.model, self.bridge, traffic).peak_acceleration
+        forecast = predict_tuned if self.flow.step_frequency is None else predict
+        return forecast(self.model, self.bridge, traffic).peak_acceleration
 
 
 @final
@@ -82,6 +86,10 @@ class EffectiveTrial:
     bridge: Footbridge
     flow: CrowdFlow
     mode: int = 0
+
+    def __post_init__(self) -> None:
+        _check_case(self.bridge, self.flow)
+        self.bridge.mode(self.mode)
 
     def __call__(self, rng: np.random.Generator) -> Array:
         people, places = self.flow.crowd(self.bridge, rng)
@@ -202,8 +210,8 @@ def assess(
     >>> found.classes[1]
     'CL3'
     """
-    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
-    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
+    _check_case(bridge, flow)
+    guide = guide_value(bridge, flow)    # first of all, since it refuses what no study should be run for
     check.instance("rule", rule, PercentileRule, "use PercentileRule(percentile=…, tolerance=…)")
     force = ZivanovicForce() if force is None else force
     peaks = {model: monte_carlo(
@@ -211,7 +219,7 @@ def assess(
         label=f"{flow}, {model}") for model in ("MF", "PMC")}
     found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor)
     return Assessment(bridge=bridge, flow=flow, effective=found, without=peaks["MF"], within=peaks["PMC"],
-                      guide=guide_value(bridge, flow), remarks=_remarks(bridge, flow, peaks))
+                      guide=guide, remarks=_remarks(bridge, flow, peaks))
 
 
 def study_effective(
@@ -247,9 +255,8 @@ def study_effective(
     >>> ensemble.samples.shape[1]
     2
     """
-    bridge.mode(mode)
-    rule = effective_rule() if rule is None else rule
     trial = EffectiveTrial(bridge=bridge, flow=flow, mode=mode)
+    rule = effective_rule() if rule is None else rule
     return monte_carlo(trial, rule=rule, seed=seed, executor=executor, label=f"{flow}, effective")
 
 
@@ -298,6 +305,7 @@ def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", m
     >>> round(guide_value(reference_bridge(frequency=2.0, damping=0.005), CrowdFlow(density=0.5)).acceleration, 3)
     4.268
     """
+    _check_case(bridge, flow)
     resonant, density = bridge.mode(mode), flow.density_on(bridge)
     return design_acceleration(
         frequency=resonant.frequency, damping=resonant.damping, modal_mass=resonant.modal_mass, density=density,
@@ -307,8 +315,14 @@ def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", m
 
 def _remarks(bridge: Footbridge, flow: CrowdFlow, peaks: dict[str, Ensemble]) -> tuple[str, ...]:
     unsettled = tuple(f"{model}: {one.reason}" for model, one in peaks.items() if not one.converged)
-    drawn = flow.sample(bridge, rng=np.random.default_rng(0)).remarks
-    return drawn + unsettled
+    drawn = flow.sample(bridge, rng=np.random.default_rng(0))
+    tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
+    return (*dict.fromkeys(drawn.remarks + tuned), *unsettled)
+
+
+def _check_case(bridge: Any, flow: Any) -> None:
+    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
 
 
 def _ends(name: str, unit: str, interval: Any, index: int) -> dict[str, float]:

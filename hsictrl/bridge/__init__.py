@@ -1,7 +1,8 @@
 """A footbridge is modes: frequency, damping, modal mass, and a shape that can be evaluated at any point."""
 
 from hsictrl.bridge.measured import MeasuredBridge
-from hsictrl.bridge.modal import Footbridge, Mode, reference_bridge
+from hsictrl.bridge.modal import Footbridge, reference_bridge
+from hsictrl.bridge.mode import Mode
 from hsictrl.bridge.shapes import BeamShape, Shape, SineShape
 
 __all__ = ["BeamShape", "Footbridge", "MeasuredBridge", "Mode", "Shape", "SineShape", "reference_bridge"]

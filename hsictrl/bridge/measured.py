@@ -29,6 +29,8 @@ class MeasuredBridge:
     modal_mass : float
         Modal mass of the mode in question, scaled to one at the first point; effective damping
         refers to it (eq. 17) [kg].
+    direction : {"vertical", "lateral"}
+        Direction of the forces and accelerations; bodies of the other direction couple to nothing.
 
     Examples
     --------
@@ -43,6 +45,7 @@ class MeasuredBridge:
     response: ct.FrequencyResponseData
     positions: Array
     modal_mass: float
+    direction: str = "vertical"
 
     def __post_init__(self) -> None:
         check.instance("response", self.response, ct.FrequencyResponseData, "use control.frd or a frequency_response")
@@ -56,6 +59,7 @@ class MeasuredBridge:
                              f"{len(self.response.omega)}; sort the record by frequency")
         if not np.all(np.isfinite(self.response.frdata)):
             raise ValueError("response must be finite, got NaN or infinity; leave out the frequencies where it is not")
+        check.choice("direction", self.direction, check.DIRECTIONS)
         object.__setattr__(self, "positions", places)
         object.__setattr__(self, "modal_mass", check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
 

@@ -78,7 +78,7 @@ class Shape(ABC):
     @property
     @abstractmethod
     def mean_absolute(self) -> float:
-        """Mean of the absolute shape along the centre line, (1/L) ∫ |φ| dx [-]."""
+        """Mean of the absolute shape along the centre line, ``(1/L) ∫ |φ| dx`` [-]."""
 
 
 @final

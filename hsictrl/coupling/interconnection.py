@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, final
 
 import control as ct
 import numpy as np
 from scipy.linalg import block_diag
 
 from hsictrl._checks import Array
+
+
+@final
+class ExactICSystem(ct.LinearICSystem):
+    """An interconnection that is simulated and linearised by its closed-loop matrices, not by the host's sweeps."""
+
+    def _rhs(self, t: float, x: Array, u: Array) -> Array:
+        return np.asarray(self.A @ np.ravel(x) + self.B @ np.ravel(u))
+
+    def _out(self, t: float, x: Array, u: Array) -> Array:
+        return np.asarray(self.C @ np.ravel(x) + self.D @ np.ravel(u))
 
 
 def interconnect(
@@ -70,10 +81,10 @@ def interconnect(
         stand_ins, connections=connections, inplist=inplist, outlist=outlist, params=params,
         check_unused=check_unused, add_unused=add_unused, ignore_inputs=ignore_inputs,
         ignore_outputs=ignore_outputs, warn_duplicate=warn_duplicate, debug=debug, **kwargs)
-    joined.syslist = [ct.ss(block) if isinstance(block, ct.TransferFunction) else block for block in syslist]
-    if not all(isinstance(block, ct.StateSpace) for block in joined.syslist):
+    joined.syslist = [_state_space(block) for block in syslist]
+    if not joined.syslist or not all(isinstance(block, ct.StateSpace) for block in joined.syslist):
         return joined
-    return ct.LinearICSystem(joined, ct.ss(*_closed(joined), joined.dt), connection_type=joined.connection_type)
+    return ExactICSystem(joined, ct.ss(*_closed(joined), joined.dt), connection_type=joined.connection_type)
 
 
 def _without_linearity(syslist: Sequence[Any]) -> list[Any]:
@@ -83,9 +94,12 @@ def _without_linearity(syslist: Sequence[Any]) -> list[Any]:
 
 
 def _stand_in(block: Any) -> Any:
-    if isinstance(block, ct.TransferFunction):
-        block = ct.ss(block, name=block.name)
+    block = _state_space(block)
     return ct.nlsys(block, name=block.name, dt=block.dt) if isinstance(block, ct.StateSpace) else block
+
+
+def _state_space(block: Any) -> Any:
+    return ct.ss(block, name=block.name) if isinstance(block, ct.TransferFunction) else block
 
 
 def _closed(joined: ct.InterconnectedSystem) -> tuple[Array, Array, Array, Array]:

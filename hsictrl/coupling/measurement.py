@@ -33,6 +33,11 @@ class OccupiedMeasurement(ct.FrequencyResponseData):
     name : str
         Name of the system.
 
+    Attributes
+    ----------
+    first_point : array, shape (w,)
+        Accelerance at the first measured point, to which the modal mass refers [m/s² per N].
+
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
@@ -56,6 +61,7 @@ class OccupiedMeasurement(ct.FrequencyResponseData):
         drive = bridge.points_of(first if force_at is None else force_at)
         sense = bridge.points_of(first if sense_at is None else sense_at)
         closed = _closed_loop(bridge, people, bridge.points_of(positions))
+        self.first_point = closed[:, 0, 0]
         super().__init__(
             np.moveaxis(closed[:, sense][:, :, drive], 0, -1), bridge.response.omega, name=name,
             inputs=[f"F[{i}]" for i in range(len(drive))], outputs=[f"a[{i}]" for i in range(len(sense))])
@@ -67,6 +73,7 @@ def _closed_loop(bridge: MeasuredBridge, people: Crowd, points: NDArray[np.intp]
     s = 1j * bridge.response.omega
     mass = np.zeros((len(s), n_points), dtype=complex)
     for body, point in zip(people, points, strict=True):
-        mass[:, point] += body.apparent_mass(s)
+        if body.direction == bridge.direction:
+            mass[:, point] += body.apparent_mass(s)
     empty = np.moveaxis(bridge.response.frdata, -1, 0)
     return np.linalg.solve(np.eye(n_points) + empty * mass[:, None, :], empty)

@@ -189,19 +189,26 @@ class OccupiedBridge(ct.StateSpace):
         (1, 1, 1)
         """
         s = np.atleast_1d(np.asarray(x, dtype=complex))
-        response = self._condensed_response(s)
-        missed = ~np.isfinite(response).all(axis=(0, 1))
-        if np.any(missed):    # a pole of the system or of an undamped body: the host knows the limit
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            stiffness = self.dynamic_stiffness(s)
+            response = self._condensed_response(s, stiffness)
+            missed = ~np.isfinite(response).all(axis=(0, 1)) | self._drowned(s, stiffness)
+        if np.any(missed):    # at a pole of the system or of an undamped body the host knows the limit
             response[:, :, missed] = super().horner(s[missed], warn_infinite)
         return response
 
-    def _condensed_response(self, s: Complex) -> Complex:
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            try:
-                motion = np.linalg.solve(self.dynamic_stiffness(s), self._drive.T[None])
-            except np.linalg.LinAlgError:
-                motion = np.full((len(s), *self._drive.T.shape), np.nan + 0j)
-            return np.asarray(np.moveaxis(s[:, None, None]**2 * (self._sense @ motion), 0, -1))
+    def _condensed_response(self, s: Complex, stiffness: Complex) -> Complex:
+        try:
+            motion = np.linalg.solve(stiffness, self._drive.T[None])
+        except np.linalg.LinAlgError:
+            motion = np.full((len(s), *self._drive.T.shape), np.nan + 0j)
+        return np.asarray(np.moveaxis(s[:, None, None]**2 * (self._sense @ motion), 0, -1))
+
+    def _drowned(self, s: Complex, stiffness: Complex) -> NDArray[np.bool_]:
+        """Where an undamped body resonates, its apparent mass drowns the modes in rounding."""
+        mass = np.trace(self.condensed.apparent_mass(0)[0].real)
+        ordinary = np.abs(s)**2 * (1 + mass) + self.bridge.omega.max()**2
+        return np.asarray(np.abs(stiffness).max(axis=(1, 2)) > 1e4 * ordinary)
 
     def respond(self, s: Complex, modal_forces: Any) -> Complex:
         """Accelerations under modal forces, in the Laplace domain: a crowd's forces move, but act through few modes.

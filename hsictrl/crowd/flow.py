@@ -67,7 +67,7 @@ def resonant_step_frequency(frequency: float) -> tuple[float, int]:
     ((2.5, 1), (1.625, 2), (2.5, 2))
     """
     frequency = check.number("frequency", frequency, above=0, remedy="give Hz")
-    harmonic = int(np.ceil(frequency / HIGHEST_STEP - 1e-12))
+    harmonic = max(1, int(np.ceil(frequency / HIGHEST_STEP - 1e-12)))
     return frequency / harmonic, harmonic
 
 
@@ -261,7 +261,7 @@ class CrowdFlow:
         arrivals, gait, across, forces, bodies, standing = rng.spawn(6)
         crossing = bridge.length / self.speed_on(bridge)
         earliest = -(crossing + settling_time(crossing, float(np.min(bridge.damping * bridge.omega))))
-        latest_first = _arrivals(self.persons_on(bridge) / crossing, crossing, earliest, arrivals)
+        latest_first = _arrivals(self.density_on(bridge) * bridge.area / crossing, crossing, earliest, arrivals)
         n = len(latest_first)
         mean, spread = self._step_rule_on(bridge)
         walkers = Walkers(

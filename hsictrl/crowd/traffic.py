@@ -56,7 +56,7 @@ class Traffic:
 
     def __str__(self) -> str:
         n = len(self.walkers)
-        return f"{n} walker{'s' if n > 1 else ''} at {self.target:.2f} Hz"
+        return f"{n} walker{'' if n == 1 else 's'} at {self.target:.2f} Hz"
 
     @property
     def target(self) -> float:
@@ -104,7 +104,7 @@ class Traffic:
         return self._with(self.walkers.at_step_frequency(moved), mean)
 
     def since(self, time: float) -> Traffic:
-        """Those who arrive at or after a time, and the same observed window.
+        """Those who arrive at or after a time, and the same window if one was given.
 
         Parameters
         ----------
@@ -148,6 +148,8 @@ class Traffic:
         """
         if self.window is not None:
             return self.window
+        if not len(self.walkers):
+            raise ValueError("traffic must hold a walker or a window, got neither; give window=(start, end) in s")
         departure = self.walkers.arrival + bridge.length / self.walkers.speed
         return float(self.walkers.arrival.min()), float(departure.max())
 
@@ -178,7 +180,7 @@ class Traffic:
         if self._standing is not None:
             return self._standing
         x = self.walkers.position([np.mean(self.observed(bridge))])[:, 0]
-        present = (x >= 0) & (x <= bridge.length)
+        present = (x >= 0) & (x <= bridge.length) & (np.abs(self.walkers.offset) <= bridge.width / 2)
         places = np.column_stack([x, self.walkers.offset])[present]
         return self.walkers.bodies.part(present), places
 

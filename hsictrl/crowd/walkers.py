@@ -278,7 +278,9 @@ ARRAYS = ("weight", "step_frequency", "speed", "arrival", "offset")
 
 
 def _draws(force: WalkingForce, n: int, rng: np.random.Generator | None) -> Array:
-    if rng is None and force.n_draws:
+    if rng is not None:
+        check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
+    elif force.n_draws:
         raise ValueError(f"{type(force).__name__} draws {force.n_draws} random numbers per walker, got no generator; "
                          "give rng=numpy.random.default_rng(seed)")
     return rng.random((n, force.n_draws)) if rng is not None else np.empty((n, 0))

@@ -15,7 +15,7 @@ Lines = list[tuple[NDArray[np.intp], ForceLines]]
 
 
 def modal_force(bridge: Footbridge, walkers: Walkers, lines: Lines, grid: Grid) -> Array:
-    """Sum of φ_j(x_k(t), y_k) F_k(t) over the walkers (eqs. 1–3), zero for those off the deck.
+    """Sum of φ_j(x_k(t), y_k) F_k(t) over the walkers (eqs. 1–3), zero for those off the deck, along it or across.
 
     Parameters
     ----------
@@ -43,15 +43,17 @@ def _add(
     total: Array, bridge: Footbridge, walkers: Walkers, who: NDArray[np.intp], force: ForceLines, grid: Grid,
 ) -> None:
     """Add the walkers of one force model, each over the samples of their own crossing."""
-    arrival, speed = walkers.arrival[who], walkers.speed[who]
+    arrival, speed, y = walkers.arrival[who], walkers.speed[who], walkers.offset[who]
     first = np.ceil((arrival - grid.first) / grid.step).astype(np.intp)
-    count = int(np.ceil(bridge.length / speed.min() / grid.step)) if len(who) else 0
-    index = first[:, None] + np.arange(count)
-    time = grid.first + grid.step * index
+    count = int(np.ceil(bridge.length / speed.min() / grid.step))
+    time = grid.first + grid.step * (first[:, None] + np.arange(count))
     x = speed[:, None] * (time - arrival[:, None])
     sample = force.on_grid(grid.first + grid.step * first, count, grid.step)
-    index = np.where((index < 0) | (index >= grid.count), grid.count, index).ravel()
-    y = np.broadcast_to(walkers.offset[who][:, None], x.shape)
+    start, stop = np.clip(-first, 0, count), np.clip(grid.count - first, 0, count)
+    on_deck = np.flatnonzero((start < stop) & (np.abs(y) <= bridge.width / 2))
     for modal, mode in zip(total, bridge.modes, strict=True):
-        share = mode.shape(x, y, "vertical") * sample / np.sqrt(mode.modal_mass)
-        modal += np.bincount(index, weights=share.ravel(), minlength=grid.count + 1)[:grid.count]
+        share = mode.shape(x, y[:, None], "vertical")
+        share *= sample
+        share /= np.sqrt(mode.modal_mass)
+        for k in on_deck:
+            modal[first[k] + start[k]:first[k] + stop[k]] += share[k, start[k]:stop[k]]

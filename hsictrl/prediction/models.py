@@ -17,9 +17,10 @@ from hsictrl.crowd import Traffic, resonant_step_frequency
 from hsictrl.crowd.flow import settling_time
 from hsictrl.prediction.forces import Lines, modal_force
 from hsictrl.prediction.grid import Grid, evenly_spaced
-from hsictrl.resonance import effective
+from hsictrl.resonance import EffectiveProperties, effective
 
 MODELS = ("MF", "PMC")
+Resonances = list[EffectiveProperties]
 NEPERS = 18.0     # decay of a record's end before it wraps around to its beginning: to 2e-8
 
 
@@ -60,7 +61,7 @@ class Prediction:
     @property
     def peak_acceleration(self) -> float:
         """Largest absolute acceleration, at the point where it is largest; read between the samples [m/s²]."""
-        return max(_peak(np.abs(signal)) for signal in self.response.y.reshape(-1, self.response.y.shape[-1]))
+        return max(_peak(signal) for signal in self.response.y.reshape(-1, self.response.y.shape[-1]))
 
 
 def predict(
@@ -105,15 +106,56 @@ def predict(
     True
     """
     system = _system(model, bridge, traffic, sense_at)
-    window = traffic.observed(bridge)
-    decay = _slowest_decay(system)
+    return _predicted(system, _resonances(system), traffic, timepts, warm_up)
+
+
+def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Prediction:
+    """Tune traffic to a model's own resonance and predict, from one and the same resonance.
+
+    Parameters
+    ----------
+    model : {"MF", "PMC"}
+        As in `predict`.
+    bridge : Footbridge
+        The empty bridge.
+    traffic : Traffic
+        Who walks over it.
+
+    Returns
+    -------
+    Prediction
+        Of ``predict(model, bridge, tune(model, bridge, traffic))``.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.crowd import CrowdFlow
+    >>> bridge = reference_bridge(frequency=2.0)
+    >>> traffic = CrowdFlow(density=0.2).sample(bridge, rng=np.random.default_rng(1))
+    >>> tuned = predict("PMC", bridge, tune("PMC", bridge, traffic))
+    >>> predict_tuned("PMC", bridge, traffic).peak_acceleration == tuned.peak_acceleration
+    True
+    """
+    system = _system(model, bridge, traffic, None)
+    found = _resonances(system)
+    return _predicted(system, found, _tuned(traffic, bridge, found), None, None)
+
+
+def _predicted(
+    system: OccupiedBridge, found: Resonances, traffic: Traffic, timepts: Any, warm_up: float | None,
+) -> Prediction:
+    """Response of a system whose resonances are known."""
+    bridge, window = system.bridge, traffic.observed(system.bridge)
+    if warm_up is not None:
+        check.number("warm_up", warm_up, least=0, remedy="give s")
+    decay = _slowest_decay(system, found)
     traffic = _relevant(traffic, bridge, decay, window, warm_up)
     lines = traffic.walkers.lines()
     grid = _grid(window, None if timepts is None else evenly_spaced(timepts), traffic, bridge, lines)
     response = _response(system, traffic, lines, grid, decay)
-    return Prediction(model=model, system=system, remarks=traffic.remarks, response=ct.TimeResponseData(
+    return Prediction(model=system.name, system=system, remarks=traffic.remarks, response=ct.TimeResponseData(
         grid.times, response, output_labels=system.output_labels, issiso=len(response) == 1,
-        plot_inputs=False, sysname=model, title=f"{model}: acceleration"))
+        plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration"))
 
 
 def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
@@ -144,10 +186,12 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     >>> round(tune("MF", bridge, traffic).target, 3), round(tune("PMC", bridge, traffic).target, 3)
     (2.0, 1.754)
     """
-    if check.choice("model", model, MODELS) == "MF":
-        frequency = bridge.modes[0].frequency
-    else:
-        frequency = effective(_system(model, bridge, traffic, None)).frequency
+    system = _system(model, bridge, traffic, None)
+    return _tuned(traffic, bridge, [effective(system)] if len(system.people) else [])
+
+
+def _tuned(traffic: Traffic, bridge: Footbridge, found: Resonances) -> Traffic:
+    frequency = found[0].frequency if found else bridge.modes[0].frequency
     return traffic.tuned(resonant_step_frequency(frequency)[0])
 
 
@@ -171,15 +215,20 @@ def _relevant(
     crossing = bridge.length / float(traffic.walkers.speed.min())
     if warm_up is None:
         warm_up = settling_time(crossing, decay)
-    return traffic.since(window[0] - crossing - check.number("warm_up", warm_up, least=0, remedy="give s"))
+    return traffic.since(window[0] - crossing - warm_up)
 
 
-def _slowest_decay(system: OccupiedBridge) -> float:
-    """Smallest ξω of the modes, effective ones where somebody stands [1/s]."""
-    if not len(system.people):
+def _resonances(system: OccupiedBridge) -> Resonances:
+    """Effective properties of every mode where somebody stands; an empty bridge has its own."""
+    return [effective(system, mode=j) for j in range(system.bridge.n_modes if len(system.people) else 0)]
+
+
+def _slowest_decay(system: OccupiedBridge, found: Resonances) -> float:
+    """Smallest ξω of the modes, effective ones where somebody stands, and of the bodies [1/s]."""
+    if not found:
         return float(np.min(system.bridge.damping * system.bridge.omega))
-    found = [effective(system, mode=j) for j in range(system.bridge.n_modes)]
-    return min(2 * np.pi * one.frequency * one.damping for one in found)
+    bodies = np.min(system.people.damping * system.people.omega)
+    return float(min(bodies, *(2 * np.pi * one.frequency * one.damping for one in found)))
 
 
 def _grid(
@@ -214,11 +263,10 @@ def _period(grid: Grid, decay: float) -> tuple[int, float]:
 
 
 def _peak(signal: Array) -> float:
-    """Largest value of a sampled signal, at the vertex of the parabola through its three highest samples."""
-    i = int(np.clip(np.argmax(signal), 1, len(signal) - 2)) if len(signal) > 2 else 0
-    if len(signal) <= 2:
-        return float(signal.max())
-    left, top, right = signal[i - 1:i + 2]
+    """Largest absolute value of a sampled signal, at the vertex of the parabola about its largest sample."""
+    i = int(np.argmax(np.abs(signal)))
+    if i in (0, len(signal) - 1):    # the parabola would tell of times that were not asked for
+        return float(abs(signal[i]))
+    left, top, right = signal[i - 1:i + 2] * np.sign(signal[i])
     bend = left - 2 * top + right
-    vertex = top - (left - right)**2 / (8 * bend) if bend < 0 else top
-    return float(max(vertex, signal.max()))
+    return float(top - (left - right)**2 / (8 * bend) if bend < 0 else top)

@@ -35,15 +35,18 @@ class Curve(ABC):
     def peaks(self, band: tuple[float, float]) -> Array:
         """Angular frequencies of all local maxima inside the band, refined by the slope's zero [rad/s]."""
         grid = np.geomspace(*band, POINTS)
-        size = self.magnitude(grid)
-        tops = 1 + np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]))
-        return np.array([self._refined(grid[top - 1], grid[top], grid[top + 1]) for top in tops])
+        size = np.pad(self.magnitude(grid), 1)      # a peak may hide between an end of the band and its neighbour
+        tops = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]))
+        around = np.pad(grid, 1, mode="edge")
+        return np.concatenate([np.zeros(0), *(self._refined(*around[top:top + 3]) for top in tops)])
 
-    def _refined(self, low: float, top: float, high: float) -> float:
-        """The maximum that lies between three grid points of which the middle one is highest."""
+    def _refined(self, low: float, top: float, high: float) -> Array:
+        """The maximum beside a grid point that is higher than its neighbours; none if that is an end of the band."""
+        low, high = (top, high) if self.slope(top) > 0 else (low, top)
         if self.slope(low) > 0 > self.slope(high):
-            return float(brentq(self.slope, low, high, xtol=1e-14 * top, rtol=1e-14))
-        return top
+            return np.array([brentq(self.slope, low, high, xtol=1e-14 * top, rtol=1e-14)])
+        wiggles = high - low > 1e-9 * top           # several maxima between two points of the grid
+        return self.peaks((low, high)) if wiggles else np.zeros(0)
 
     def half_power(self, peak: float) -> tuple[float, float]:
         """Angular frequencies on both sides of a peak where |H| falls to 1/√2 of it [rad/s]."""
@@ -63,12 +66,15 @@ class ModalCurve(Curve):
 
     def magnitude(self, omega: Any) -> Array:
         s = 1j * np.asarray(omega)
-        flexibility = np.linalg.inv(self.system.dynamic_stiffness(s))[:, self.index, self.index]
-        return np.asarray(np.abs(s**2 * flexibility)) / self.modal_mass
+        with np.errstate(divide="ignore", invalid="ignore"):
+            flexibility = np.linalg.inv(self.system.dynamic_stiffness(s))[:, self.index, self.index]
+        size = np.asarray(np.abs(s**2 * flexibility)) / self.modal_mass
+        return np.nan_to_num(size, nan=0.0)         # NaN at the frequency of an undamped body, which holds the deck
 
     def slope(self, omega: float) -> float:
         s = 1j * omega
-        stiffness, growth = self.system.dynamic_stiffness(s)[0], dynamic_stiffness_slope(self.system, s)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            stiffness, growth = self.system.dynamic_stiffness(s)[0], dynamic_stiffness_slope(self.system, s)
         column = np.linalg.solve(stiffness, np.eye(len(stiffness))[self.index])
         return float((1j * (2 / s - column @ growth @ column / column[self.index])).real)
 
@@ -80,7 +86,7 @@ class MeasuredCurve(Curve):
     def __init__(self, system: OccupiedMeasurement) -> None:
         self.modal_mass = system.bridge.modal_mass
         self.band = (float(system.omega[0]), float(system.omega[-1]))
-        self._inverse = CubicSpline(system.omega, 1 / system.frdata[0, 0])
+        self._inverse = CubicSpline(system.omega, 1 / system.first_point)
 
     def magnitude(self, omega: Any) -> Array:
         return np.asarray(1 / np.abs(self._inverse(omega)))

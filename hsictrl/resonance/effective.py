@@ -16,6 +16,7 @@ from hsictrl.resonance.poles import dominant_pole
 from hsictrl.resonance.response import occupied
 
 METHODS = ("peak", "pole", "halfpower")
+UNBOUNDED = 1e12        # below a damping ratio of 1e-12 rounding decides how high a peak is
 
 
 @final
@@ -86,7 +87,7 @@ def effective(
     The response is read on the mode's own coordinate, at its antinode. The three definitions agree
     only for a lightly damped mode on its own:
 
-    * "peak": frequency of the largest |H|, and ξ_eff = 1/(2 m_B max|H|) with the modal mass of the
+    * "peak": frequency of the largest ``|H|``, and ``ξ_eff = 1/(2 m_B max|H|)`` with the modal mass of the
       *empty* bridge (eq. 17); the paper's definition.
     * "pole": modulus and damping of the pole that contributes the most to the response.
     * "halfpower": the peak's frequency, and the width of the band above 1/√2 of the peak over twice
@@ -124,7 +125,10 @@ def effective(
     check.choice("method", method, METHODS)
     curve = _curve(occupied(system), mode)
     limits = curve.band if band is None else _hertz_band(band, curve)
-    tops = curve.peaks(limits)
+    try:
+        tops = curve.peaks(limits)
+    except np.linalg.LinAlgError:
+        raise _unbounded(limits) from None
     if not len(tops):
         raise ValueError(f"the band must hold a peak of |H|, got none between {limits[0] / (2 * np.pi):.3g} and "
                          f"{limits[1] / (2 * np.pi):.3g} Hz; widen it, or draw frf() to see where the peak is")
@@ -134,6 +138,8 @@ def effective(
 def _described(curve: Curve, tops: np.ndarray, method: str) -> EffectiveProperties:
     heights = curve.magnitude(tops)
     order = np.argsort(-heights)
+    if 2 * curve.modal_mass * heights[order[0]] > UNBOUNDED:
+        raise _unbounded((tops[order[0]], tops[order[0]]))
     omega, damping = _read(curve, float(tops[order[0]]), float(heights[order[0]]), method)
     others = tuple((float(tops[i] / (2 * np.pi)), float(heights[i])) for i in order[1:])
     return EffectiveProperties(frequency=omega / (2 * np.pi), damping=damping, peak=float(heights[order[0]]),
@@ -171,6 +177,12 @@ def _hertz_band(band: Any, curve: Curve) -> tuple[float, float]:
         raise ValueError(f"band must be (low, high) with low below high, got ({low:g}, {high:g}) Hz; "
                          "swap or widen it")
     return omega
+
+
+def _unbounded(omega: tuple[float, float]) -> ValueError:
+    low, high = omega[0] / (2 * np.pi), omega[1] / (2 * np.pi)
+    return ValueError("effective properties need damping, got a peak of |H| without bound "
+                      f"between {low:.4g} and {high:.4g} Hz; give the bridge a damping ratio above 0")
 
 
 def _pair(band: Any) -> tuple[float, float]:

@@ -13,8 +13,13 @@ def dominant_pole(system: OccupiedBridge, index: int) -> complex:
     """The oscillating pole p with the largest |residue/Re p| in the response on one mode's coordinate [rad/s]."""
     poles = system.poles()
     poles = poles[poles.imag > 0]
-    weights = [abs(_residue(system, pole, index) / pole.real) if pole.real else np.inf for pole in poles]
-    return complex(poles[int(np.argmax(weights))])
+    return complex(max(poles, key=lambda pole: _weight(_residue(system, pole, index), pole)))
+
+
+def _weight(residue: float, pole: complex) -> float:
+    if not residue:
+        return 0.0
+    return abs(residue / pole.real) if pole.real else np.inf
 
 
 def _residue(system: OccupiedBridge, pole: complex, index: int) -> float:

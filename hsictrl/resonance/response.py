@@ -45,11 +45,16 @@ def frf(
     """
     hertz = check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give an increasing array of Hz")
     if not len(hertz) or np.any(np.diff(hertz) <= 0):
-        raise ValueError(f"frequencies must increase, got {len(hertz)} of them out of order; sort them")
+        raise ValueError(f"frequencies must increase, got {_short(hertz)}; give at least one, and sort them")
     system = occupied(system)
     if isinstance(system, OccupiedBridge):
         return ct.frequency_response(system, 2 * np.pi * hertz)
     return _interpolated(system, 2 * np.pi * hertz)
+
+
+def _short(hertz: np.ndarray) -> str:
+    fall = int(np.argmax(np.diff(hertz) <= 0)) if len(hertz) > 1 else 0
+    return f"{hertz[fall + 1]:g} Hz after {hertz[fall]:g} Hz" if len(hertz) else "none"
 
 
 def _interpolated(measured: OccupiedMeasurement, omega: np.ndarray) -> ct.FrequencyResponseData:

@@ -18,7 +18,7 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
     """Effective frequency and damping (eq. 17) of single-mode bridges that differ in frequency and damping.
 
     The crowd's apparent mass S(ω) does not depend on the bridge: it is tabulated once, and
-    1/|H|² = |1 + S − (ω_B/ω)² − 2iξ ω_B/ω|² is minimised for all bridges together.
+    ``1/|H|² = |1 + S − (ω_B/ω)² − 2iξ ω_B/ω|²`` is minimised for all bridges together.
 
     Parameters
     ----------

@@ -1,0 +1,37 @@
+# `make demo` and `make test` do all the set-up: they need Python 3.11 and make, nothing else.
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+BIN := .venv/bin
+export OPENBLAS_NUM_THREADS := 1
+
+.PHONY: demo test bench docs paper clean
+
+demo: .venv/.core      ## assess the paper's reference bridge, at a tolerance of 10 % (half the precision of the default)
+	$(BIN)/hsictrl assess --tolerance 0.1 --processes 2
+
+test: .venv/.tools     ## lint, types, walls, unit tests, doctests, documentation
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	MPLBACKEND=Agg $(BIN)/python -m pytest
+	$(BIN)/sphinx-build -q -W --keep-going docs docs/_build/html
+
+bench: .venv/.tools    ## ours, the host's road, and the ratio, in one run on one thread
+	$(BIN)/python tests/benchmarks/bench.py
+
+docs: .venv/.tools     ## the documentation, into docs/_build/html
+	$(BIN)/sphinx-build -q -W docs docs/_build/html
+
+paper: .venv/.tools    ## run the studies of the paper anew and replace their committed results
+	$(BIN)/hsictrl paper fig4 --recompute --processes 2 --output hsictrl/paper/results
+
+.venv/.core: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable .
+	touch $@
+
+.venv/.tools: .venv/.core
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[test,docs]'
+	touch $@
+
+clean:
+	rm -rf .venv docs/_build docs/reference

@@ -1,0 +1,34 @@
+"""The claims of the paper, each evaluated by the criterion that was fixed beforehand."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from importlib.resources import files
+
+from hsictrl.paper import claims_fig3, claims_fig4, fig4
+from hsictrl.paper.reports import Finding, Report, Rows
+
+VERDICTS = {True: "holds", False: "fails", None: "undecided"}
+
+
+def report(recompute: bool, executor: Executor | None) -> Report:
+    """All claims that can be evaluated so far."""
+    drawn = fig4.report(recompute, executor).rows
+    findings: dict[str, Callable[[], Finding]] = claims_fig3.FINDINGS | claims_fig4.findings(drawn)
+    rows: Rows = [_row(claim, *findings[claim["id"]]()) for claim in _claims()]
+    held = sum(row["verdict"] == "holds" for row in rows)
+    return Report(name="claims", rows=rows, columns=["id", "where", "says", "measured", "verdict", "reason"],
+                  caption=f"{held} of {len(rows)} claims evaluated so far hold by their criterion")
+
+
+def _row(claim: dict[str, str], measured: str, holds: bool | None, reason: str) -> dict[str, str]:
+    return {"id": claim["id"], "where": claim["where"], "says": claim["says"], "measured": measured,
+            "verdict": VERDICTS[holds], "reason": "" if holds else reason,
+            "criterion": claim["criterion"]}
+
+
+def _claims() -> Iterator[dict[str, str]]:
+    text = (files("hsictrl.paper") / "claims.toml").read_text(encoding="utf-8")
+    yield from tomllib.loads(text)["claim"]

@@ -1,0 +1,52 @@
+"""What can be reproduced, by name: from committed results in seconds, or computed anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+
+from hsictrl import _checks as check
+from hsictrl.paper import claims, fig3, fig4
+from hsictrl.paper.reports import Report
+
+RECIPES: dict[str, Callable[[bool, Executor | None], Report]] = {
+    "fig3": fig3.report, "fig4": fig4.report, "claims": claims.report}
+
+
+def names() -> tuple[str, ...]:
+    """What `compute` knows.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> names()
+    ('fig3', 'fig4', 'claims')
+    """
+    return tuple(RECIPES)
+
+
+def compute(name: str, *, recompute: bool = False, executor: Executor | None = None) -> Report:
+    """Reproduce a figure of the paper, or evaluate its claims.
+
+    Parameters
+    ----------
+    name : str
+        One of `names()`.
+    recompute : bool
+        Whether to run studies anew rather than read their committed results.
+    executor : concurrent.futures.Executor, optional
+        Where trials run; in place if not given.
+
+    Returns
+    -------
+    Report
+
+    Examples
+    --------
+    >>> compute("fig3").columns[:2]
+    ['mass_ratio', 'frequency_ratio']
+    """
+    return RECIPES[check.choice("name", name, names())](recompute, executor)

@@ -1,0 +1,68 @@
+"""What a reproduction hands out, and where its committed results lie."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any, final
+
+import control as ct
+
+Rows = list[dict[str, Any]]
+# what was measured, whether the criterion holds (None: the interval does not tell), and why not if it does not
+Finding = tuple[str, bool | None, str]
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Report:
+    """A figure or table of the paper, computed.
+
+    Parameters
+    ----------
+    name : str
+        What was asked for, "fig3" and so on.
+    rows : list of dict
+        The numbers, ready for JSON, with units in the keys.
+    columns : list of str
+        Keys worth a column of a printed table.
+    caption : str
+        What the numbers are, and under which assumptions.
+    draw : callable, optional
+        Draws the figure and returns a `control.ControlPlot`.
+
+    Examples
+    --------
+    >>> from hsictrl.paper import compute
+    >>> compute("fig3").rows[0]["persons"]
+    71
+    """
+
+    name: str
+    rows: Rows
+    columns: list[str]
+    caption: str
+    draw: Callable[[], ct.ControlPlot] | None = None
+
+
+def committed(name: str) -> Rows:
+    """Rows that were computed once and are shipped with the package.
+
+    Parameters
+    ----------
+    name : str
+        Name of the report.
+
+    Returns
+    -------
+    list of dict
+
+    Examples
+    --------
+    >>> len(committed("fig4"))
+    612
+    """
+    rows: Rows = json.loads((files("hsictrl.paper") / "results" / f"{name}.json").read_text(encoding="utf-8"))
+    return rows

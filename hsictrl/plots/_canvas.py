@@ -1,0 +1,93 @@
+"""What all plots share: axes, colours, names and legends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import control as ct
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+
+from hsictrl import _checks as check
+
+Handle = Artist | tuple[Artist, ...]   # a tuple is drawn as one entry, and named by its last
+INK = "#222222"
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")  # Okabe and Ito (2008)
+DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1)))
+
+
+def colour(index: int) -> str:
+    """Colour of the curve with this index."""
+    return COLOURS[index % len(COLOURS)]
+
+
+def style(index: int) -> dict[str, Any]:
+    """Colour and dashes of the curve with this index; 28 pairs differ."""
+    return {"color": colour(index), "linestyle": DASHES[index % len(DASHES)]}
+
+
+def one_or_several(name: str, given: Any, kind: type, remedy: str) -> list[Any]:
+    """A list of what was given, alone or in a list or tuple; refuse other kinds."""
+    items = list(given) if isinstance(given, list | tuple) else [given]
+    if not items:
+        raise ValueError(f"{name} must hold at least one {kind.__name__}, got none; {remedy}")
+    return [check.instance(name, item, kind, remedy) for item in items]
+
+
+def names(labels: str | Sequence[str] | None, defaults: Sequence[str | None]) -> list[str]:
+    """One label per curve: those given, or the curves' own."""
+    if labels is None:
+        return [own or f"curve {i}" for i, own in enumerate(defaults)]
+    given = [labels] if isinstance(labels, str) else list(labels)
+    if len(given) != len(defaults):
+        raise ValueError(f"labels must be one per curve, got {len(given)} for {len(defaults)}; give as many")
+    return given
+
+
+def one_axes(ax: Axes | None) -> Axes:
+    """The axes given, or those of a new figure."""
+    if ax is None:
+        return plt.subplots(layout="constrained")[1]
+    return check.instance("ax", ax, Axes, "make one with matplotlib.pyplot.subplots()")
+
+
+def several_axes(ax: Sequence[Axes] | np.ndarray | None, count: int, figsize: tuple[float, float]) -> list[Axes]:
+    """The axes given, or those of a new figure with one panel above the other."""
+    if ax is None:
+        ax = plt.subplots(count, 1, figsize=figsize, layout="constrained")[1]
+    axes = [one_axes(one) for one in np.ravel(np.asarray(ax, dtype=object))]
+    if len(axes) != count:
+        raise ValueError(f"ax must hold {count} axes, got {len(axes)}; "
+                         f"make them with matplotlib.pyplot.subplots({count}, 1)")
+    return axes
+
+
+def legend_above(ax: Axes, columns: Sequence[Sequence[Handle]], title: str | None = None) -> Legend:
+    """A legend above the axes, where it covers no data; what belongs to one curve stands in one row."""
+    handles = [handle for column in columns for handle in column]
+    labels = [str((handle[-1] if isinstance(handle, tuple) else handle).get_label()) for handle in handles]
+    used = sum(bool(column) for column in columns)
+    return ax.legend(handles, labels, ncols=used, loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False,
+                     fontsize="small", borderaxespad=0.2, columnspacing=1.5, title=title, title_fontsize="small")
+
+
+def grid(ax: Axes) -> None:
+    """Faint lines behind the data, and no margin at the left and right."""
+    ax.grid(color="0.9", linewidth=0.6)
+    ax.set_axisbelow(True)
+    ax.margins(x=0)
+
+
+def control_plot(
+    lines: Sequence[list[Line2D]], axes: Sequence[Axes], legends: Sequence[Legend | None],
+) -> ct.ControlPlot:
+    """The host's container, one row per panel."""
+    held = np.empty((len(axes), 1), dtype=object)
+    for row, panel in enumerate(lines):
+        held[row, 0] = panel
+    return ct.ControlPlot(held, np.array([axes]).T, axes[0].figure, legend=np.array([legends], dtype=object).T)

@@ -1,0 +1,78 @@
+"""Figures composed of the other plots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import control as ct
+import numpy as np
+from matplotlib.axes import Axes
+
+from hsictrl.plots import _canvas as canvas
+from hsictrl.plots.convergence import convergence_plot
+from hsictrl.plots.frequency import frf_plot
+from hsictrl.plots.history import response_plot
+from hsictrl.resonance import EffectiveProperties
+from hsictrl.study import Ensemble
+
+BRIDGES = ("empty bridge", "occupied bridge")
+
+
+def assessment_figure(
+    *, frfs: Sequence[ct.FrequencyResponseData], effective: Sequence[EffectiveProperties],
+    responses: Sequence[ct.TimeResponseData], ensembles: Sequence[Ensemble], labels: Sequence[str] = ("MF", "PMC"),
+    title: str, ax: Sequence[Axes] | np.ndarray | None = None,
+) -> ct.ControlPlot:
+    """Draw an assessment in three panels: frequency response, one history, and how the percentile settles.
+
+    Parameters
+    ----------
+    frfs : sequence of control.FrequencyResponseData
+        Of the empty and of the occupied bridge [m/s² per N].
+    effective : sequence of EffectiveProperties
+        Of the same two [Hz, m/s² per N].
+    responses : sequence of control.TimeResponseData
+        Accelerations without and with interaction [m/s², s].
+    ensembles : sequence of Ensemble
+        Peak accelerations without and with interaction [m/s²].
+    labels : sequence of str
+        Names of the models without and with interaction.
+    title : str
+        Title of the figure.
+    ax : array or sequence of matplotlib.axes.Axes, optional
+        Three axes; those of a new figure if not given.
+
+    Returns
+    -------
+    control.ControlPlot
+        One row per panel.
+
+    Raises
+    ------
+    ValueError
+        If `ax` holds more or fewer than three axes, or results are not a pair.
+
+    Examples
+    --------
+    >>> import hsictrl as hsi
+    >>> from matplotlib.figure import Figure
+    >>> bridge, rng = hsi.reference_bridge(frequency=2.0), np.random.default_rng(1)
+    >>> traffic = hsi.CrowdFlow(persons=15).sample(bridge, rng=rng)
+    >>> found = [hsi.predict(model, bridge, hsi.tune(model, bridge, traffic)) for model in ("MF", "PMC")]
+    >>> peaks = hsi.monte_carlo(lambda rng: rng.rayleigh(), rule=hsi.PercentileRule(tolerance=0.2))
+    >>> plot = assessment_figure(
+    ...     frfs=[hsi.frf(one.system, np.linspace(1.0, 3.0, 201)) for one in found],
+    ...     effective=[hsi.effective(one.system) for one in found], responses=[one.response for one in found],
+    ...     ensembles=[peaks, peaks], title="Reference bridge, 15 persons", ax=Figure().subplots(3, 1))
+    >>> plot.axes.shape
+    (3, 1)
+    """
+    axes = canvas.several_axes(ax, 3, figsize=(10.0, 9.0))
+    panels = [frf_plot(frfs, labels=BRIDGES, effective=effective, ax=axes[0]),
+              response_plot(responses, labels=labels, ax=axes[1]),
+              convergence_plot(ensembles, labels=labels, ax=axes[2])]
+    heads = "Frequency response", "Acceleration", f"Convergence of {ensembles[0].rule.labels[0]}"
+    for axis, letter, head in zip(axes, "abc", heads, strict=True):
+        axis.set_title(f"({letter}) {head}", loc="left", fontsize="medium")
+    axes[0].figure.suptitle(title)
+    return canvas.control_plot([one.lines[0, 0] for one in panels], axes, [one.legend[0, 0] for one in panels])

@@ -1,0 +1,86 @@
+"""Accelerations over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import control as ct
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from hsictrl._checks import Array
+from hsictrl.plots import _canvas as canvas
+from hsictrl.records import running_rms
+
+
+def response_plot(
+    responses: ct.TimeResponseData | Sequence[ct.TimeResponseData], *, labels: str | Sequence[str] | None = None,
+    ax: Axes | None = None,
+) -> ct.ControlPlot:
+    """Draw accelerations over time: thin traces, their running 1-s r.m.s. in bold, and their peaks.
+
+    Parameters
+    ----------
+    responses : control.TimeResponseData or sequence of them
+        One acceleration each, as ``predict(...).response`` [m/s², s].
+    labels : str or sequence of str, optional
+        One per response; the names of their systems if not given.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; on a new figure if not given.
+
+    Returns
+    -------
+    control.ControlPlot
+        Its lines are all traces, then all running r.m.s., then all peaks.
+
+    Raises
+    ------
+    ValueError
+        If a response has several outputs, or labels are not one per response.
+
+    Examples
+    --------
+    >>> import hsictrl as hsi
+    >>> from matplotlib.figure import Figure
+    >>> bridge = hsi.reference_bridge(frequency=2.0)
+    >>> walker = hsi.Walker(force=hsi.HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+    >>> found = hsi.predict("MF", bridge, hsi.Traffic([walker]))
+    >>> plot = response_plot(found.response, ax=Figure().subplots())
+    >>> [line.get_label() for line in plot.lines[0, 0]]
+    ['MF', 'running 1-s RMS', 'peak 0.84 m/s² at 30.1 s']
+    """
+    records = _checked(responses)
+    labels = canvas.names(labels, [record.sysname for record in records])
+    ax = canvas.one_axes(ax)
+    canvas.grid(ax)
+    drawn = [_record(ax, i, *pair) for i, pair in enumerate(zip(records, labels, strict=True))]
+    columns = list(zip(*drawn, strict=True))
+    ax.set(xlabel="Time [s]", ylabel="Acceleration [m/s²]")
+    lines = [line for column in columns for line in column]
+    return canvas.control_plot([lines], [ax], [canvas.legend_above(ax, columns)])
+
+
+def _record(ax: Axes, index: int, record: ct.TimeResponseData, label: str) -> tuple[Line2D, Line2D, Line2D]:
+    """The trace, its running r.m.s. and its peak."""
+    time, signal = record.time, np.ravel(record.outputs)
+    trace, = ax.plot(time, signal, color=canvas.colour(index), linewidth=0.8, alpha=0.7, label=label)
+    bold, = ax.plot(time, np.ravel(running_rms(record)), linewidth=2.2, zorder=4, label="running 1-s RMS",
+                    **canvas.style(index))
+    return trace, bold, _peak(ax, index, time, signal)
+
+
+def _peak(ax: Axes, index: int, time: Array, signal: Array) -> Line2D:
+    top = int(np.argmax(np.abs(signal)))
+    label = f"peak {abs(signal[top]):.2f} m/s² at {time[top]:.1f} s"
+    return ax.plot(time[top], signal[top], "o", color=canvas.colour(index), markeredgecolor=canvas.INK, zorder=5,
+                   label=label)[0]
+
+
+def _checked(responses: object) -> list[ct.TimeResponseData]:
+    records = canvas.one_or_several("responses", responses, ct.TimeResponseData, "give predict(...).response")
+    for record in records:
+        if np.ndim(record.outputs) > 1 and len(record.outputs) != 1:
+            raise ValueError(f"responses must have one output, got {len(record.outputs)}; "
+                             "predict with one point in sense_at")
+    return records

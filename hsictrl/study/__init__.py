@@ -1,0 +1,18 @@
+"""Independent trials until a percentile has settled.
+
+A trial is a function of a random generator that returns a number, or one number per quantity. `monte_carlo`
+runs trials until its stop rule says that the estimate has settled, and returns an `Ensemble` that keeps every
+sample. Trial i draws from a random stream of its own and a rule reads the trials in index order, so the
+answer doesn't depend on the number of workers, and any trial can be run again alone.
+
+Source: Van Nimmen et al. (2017), section 2.3.
+"""
+
+from hsictrl.study.ensembles import Ensemble, History
+from hsictrl.study.rules import AllRules, Judgement, MeanRule, PercentileRule, StopRule
+from hsictrl.study.trials import monte_carlo, trial_rng
+
+__all__ = [
+    "AllRules", "Ensemble", "History", "Judgement", "MeanRule", "PercentileRule", "StopRule", "monte_carlo",
+    "trial_rng",
+]
