@@ -119,10 +119,12 @@ def directions(values: Any) -> NDArray[np.str_]:
     return array
 
 
-def points(name: str, values: Any) -> Array:
+def points(name: str, values: Any, *, least: int = 0) -> Array:
     """Return places on a deck as an (n, 2) array of x and y [m]; a plain list of x lies on the centre line."""
     remedy = "give x [m], or pairs (x, y) [m]"
     array = np.atleast_1d(numbers(name, values, remedy=remedy))
+    if len(array) < least:
+        raise ValueError(f"{name} must hold at least {least} place(s), got {len(array)}; {remedy}")
     if array.ndim == 1:
         array = np.column_stack([array, np.zeros_like(array)])
     if array.ndim != 2 or array.shape[1] != 2:

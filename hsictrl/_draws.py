@@ -9,7 +9,6 @@ from scipy.special import ndtr, ndtri
 
 from hsictrl._checks import Array
 
-
 SMALLEST_DRAW = 2.0**-53     # above zero, of numpy.random.Generator.random
 
 

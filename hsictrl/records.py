@@ -32,7 +32,8 @@ def running_rms(response: ct.TimeResponseData, *, duration: float = 1.0) -> Arra
     Notes
     -----
     Source: the running r.m.s. of ISO 2631-1:1997, eq. (2), of the signal as it is, without frequency
-    weighting; its greatest value is the MTVV of eq. (4). The square is integrated by the trapezoidal rule.
+    weighting; its greatest value is the MTVV of eq. (4). The square is integrated by the trapezoidal rule, in one
+    running sum: what is a million times quieter than what came before is lost in rounding.
 
     Examples
     --------

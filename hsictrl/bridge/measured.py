@@ -49,7 +49,7 @@ class MeasuredBridge:
 
     def __post_init__(self) -> None:
         check.instance("response", self.response, ct.FrequencyResponseData, "use control.frd or a frequency_response")
-        places = check.points("positions", self.positions)
+        places = check.points("positions", self.positions, least=1)
         if self.response.shape != (len(places), len(places)):
             raise ValueError(f"response must have a row and a column for each of the {len(places)} positions, got "
                              f"shape {self.response.shape}; measure the force at every point, at every point")
@@ -63,11 +63,13 @@ class MeasuredBridge:
         object.__setattr__(self, "positions", places)
         object.__setattr__(self, "modal_mass", check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
 
-    def points_of(self, positions: Any) -> np.ndarray:
+    def points_of(self, name: str, positions: Any) -> np.ndarray:
         """Index of the measured point at each place; refuse places where nothing was measured.
 
         Parameters
         ----------
+        name : str
+            What to call the places in a refusal.
         positions : array_like, shape (n,) or (n, 2)
             Places x, or (x, y) [m].
 
@@ -79,13 +81,13 @@ class MeasuredBridge:
         Examples
         --------
         >>> frd = ct.frd(np.ones((2, 2, 5)), np.arange(1.0, 6.0))
-        >>> MeasuredBridge(response=frd, positions=[10.0, 20.0], modal_mass=1.0).points_of([20.0])
+        >>> MeasuredBridge(response=frd, positions=[10.0, 20.0], modal_mass=1.0).points_of("positions", [20.0])
         array([1])
         """
-        places = check.points("positions", positions)
+        places = check.points(name, positions)
         apart = np.linalg.norm(places[:, None] - self.positions[None], axis=2)
         if np.any(apart.min(axis=1, initial=np.inf) > 1e-6):
             i = int(np.argmax(apart.min(axis=1)))
-            raise ValueError(f"positions must be among the measured points, got positions[{i}] = ({places[i, 0]:g}, "
+            raise ValueError(f"{name} must be among the measured points, got {name}[{i}] = ({places[i, 0]:g}, "
                              f"{places[i, 1]:g}) m; move it to the nearest point, or measure there")
         return np.argmin(apart, axis=1)

@@ -276,7 +276,7 @@ class Footbridge:
         """
         if tuple(ports) not in (("y", "v"), ("y", "v", "a")):
             raise ValueError(f"ports must be ('y', 'v', 'a') or ('y', 'v'), got {tuple(ports)}; choose one of these")
-        rows = self.participation(self.on_deck("at", at))
+        rows = self.participation(self.on_deck("at", check.points("at", at, least=1)))
         n, n_m = rows.shape
         zero, eye = np.zeros((n_m, n_m)), np.eye(n_m)
         A = np.block([[zero, eye], [-np.diag(self.omega**2), -np.diag(2 * self.damping * self.omega)]])

@@ -8,6 +8,7 @@ import control as ct
 import numpy as np
 from numpy.typing import NDArray
 
+from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import MeasuredBridge
 from hsictrl.pedestrian import Crowd
@@ -57,14 +58,17 @@ class OccupiedMeasurement(ct.FrequencyResponseData):
         force_at: Any = None, sense_at: Any = None, name: str = "occupied",
     ) -> None:
         self.bridge, self.people, self.positions = bridge, people, positions
-        first = bridge.positions[:1]
-        drive = bridge.points_of(first if force_at is None else force_at)
-        sense = bridge.points_of(first if sense_at is None else sense_at)
-        closed = _closed_loop(bridge, people, bridge.points_of(positions))
+        drive, sense = _points(bridge, "force_at", force_at), _points(bridge, "sense_at", sense_at)
+        closed = _closed_loop(bridge, people, bridge.points_of("positions", positions))
         self.first_point = closed[:, 0, 0]
         super().__init__(
             np.moveaxis(closed[:, sense][:, :, drive], 0, -1), bridge.response.omega, name=name,
             inputs=[f"F[{i}]" for i in range(len(drive))], outputs=[f"a[{i}]" for i in range(len(sense))])
+
+
+def _points(bridge: MeasuredBridge, name: str, places: Any) -> NDArray[np.intp]:
+    """Index of the points asked for, or of the first."""
+    return bridge.points_of(name, check.points(name, bridge.positions[:1] if places is None else places, least=1))
 
 
 def _closed_loop(bridge: MeasuredBridge, people: Crowd, points: NDArray[np.intp]) -> NDArray[np.complex128]:

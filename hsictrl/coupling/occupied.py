@@ -106,11 +106,10 @@ class OccupiedBridge(ct.StateSpace):
         self, bridge: Footbridge, people: Crowd, positions: Array, *,
         force_at: Any = None, sense_at: Any = None, name: str = "occupied",
     ) -> None:
-        antinode = [bridge.modes[0].shape.antinode]
         self.bridge, self.people = bridge, people
         self.positions = bridge.on_deck("positions", positions)
-        self.force_at = bridge.on_deck("force_at", antinode if force_at is None else force_at)
-        self.sense_at = bridge.on_deck("sense_at", antinode if sense_at is None else sense_at)
+        self.force_at = _points(bridge, "force_at", force_at)
+        self.sense_at = _points(bridge, "sense_at", sense_at)
         self._drive, self._sense = bridge.participation(self.force_at), bridge.participation(self.sense_at)
         self.condensed = CondensedCrowd(people, bridge.participation(self.positions, people.direction))
         n_m, n = self.condensed.rows.shape[1], len(people)
@@ -189,6 +188,8 @@ class OccupiedBridge(ct.StateSpace):
         (1, 1, 1)
         """
         s = np.atleast_1d(np.asarray(x, dtype=complex))
+        if s.ndim > 1:
+            raise ValueError(f"x must be one number or one row, got shape {s.shape}; ravel it")
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             stiffness = self.dynamic_stiffness(s)
             response = self._condensed_response(s, stiffness)
@@ -291,6 +292,12 @@ def _crowd(people: Any, n: int) -> Crowd:
         raise ValueError(f"people and positions must be as many, got {len(people)} bodies and {n} positions; "
                          "give one position per body")
     return people
+
+
+def _points(bridge: Footbridge, name: str, places: Any) -> Array:
+    """The places asked for, or the antinode of the first mode."""
+    antinode = [bridge.modes[0].shape.antinode]
+    return bridge.on_deck(name, check.points(name, antinode if places is None else places, least=1))
 
 
 def _labels(base: str, n: int) -> list[str]:

@@ -218,6 +218,8 @@ class CrowdFlow:
         >>> len(people), places.shape
         (30, (30, 2))
         """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+        check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
         n = self.persons_on(bridge)
         places = (rng.random((n, 2)) - [0.0, 0.5]) * [bridge.length, bridge.width]
         return self.population.sample(n, rng), places

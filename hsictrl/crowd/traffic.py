@@ -52,7 +52,8 @@ class Traffic:
     ) -> None:
         self.walkers = walkers if isinstance(walkers, Walkers) else _by_hand(walkers, rng)
         self.window = None if window is None else _window(window)
-        self._target, self._standing = target, standing
+        self._target = None if target is None else check.number("target", target, above=0, remedy="give Hz")
+        self._standing = None if standing is None else _standing(standing)
 
     def __str__(self) -> str:
         n = len(self.walkers)
@@ -123,7 +124,8 @@ class Traffic:
         >>> len(Traffic([early, late]).since(1.0).walkers)
         1
         """
-        return self._with(self.walkers.part(self.walkers.arrival >= time), self.target)
+        late = self.walkers.arrival >= check.number("time", time, remedy="give s")
+        return self._with(self.walkers.part(late), self.target)
 
     def observed(self, bridge: Footbridge) -> tuple[float, float]:
         """Start and end of the observed time.
@@ -192,6 +194,17 @@ def _by_hand(walkers: Sequence[Walker], rng: np.random.Generator | None) -> Walk
     if isinstance(walkers, Sequence) and not walkers:
         raise ValueError("traffic must hold at least one walker, got none; use couple(bridge) for an empty deck")
     return Walkers.of(walkers, rng)
+
+
+def _standing(standing: tuple[Crowd, Array]) -> tuple[Crowd, Array]:
+    remedy = "give (people, places), as CrowdFlow.crowd does"
+    if len(check.instance("standing", standing, tuple, remedy)) != 2:
+        raise ValueError(f"standing must be a pair, got {len(standing)} values; {remedy}")
+    people, places = check.instance("standing", standing[0], Crowd, remedy), check.points("standing", standing[1])
+    if len(people) != len(places):
+        raise ValueError(f"standing must hold one place per body, got {len(people)} bodies and {len(places)} places; "
+                         f"{remedy}")
+    return people, places
 
 
 def _window(window: tuple[float, float]) -> tuple[float, float]:

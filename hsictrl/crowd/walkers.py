@@ -134,6 +134,11 @@ class Walkers:
         lengths = {name: len(getattr(self, name)) for name in ("bodies", "model", *ARRAYS)}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"walkers' arrays must have the same length, got {lengths}; give one value per walker")
+        expected = [(int(np.sum(self.model == i)), force.n_draws) for i, force in enumerate(self.forces)]
+        found = [np.shape(table) for table in self.draws]
+        if found != expected or sum(n for n, _ in expected) != len(self.model):
+            raise ValueError(f"draws must be one table per force model, a row per walker, of shapes {expected}, got "
+                             f"{found}; draw them by rng.random((n, force.n_draws))")
 
     @classmethod
     def of(cls, walkers: Sequence[Walker], rng: np.random.Generator | None = None) -> Walkers:

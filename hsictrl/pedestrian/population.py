@@ -49,7 +49,7 @@ class Population:
     direction: str = "vertical"
 
     def __post_init__(self) -> None:
-        for name, most in (("frequency", np.inf), ("damping", 1.0), ("mass", np.inf)):
+        for name, most in (("frequency", None), ("damping", 1.0), ("mass", None)):
             object.__setattr__(self, name, _mean_and_spread(name, getattr(self, name), most))
         check.number("sprung_ratio", self.sprung_ratio, **RULES["sprung_ratio"])
         check.choice("direction", self.direction, check.DIRECTIONS)
@@ -135,10 +135,10 @@ def _pair(normal: float | tuple[float, float]) -> tuple[float, float]:
     return normal if isinstance(normal, tuple) else (normal, 0.0)
 
 
-def _mean_and_spread(name: str, value: Any, most: float) -> tuple[float, float]:
+def _mean_and_spread(name: str, value: Any, below: float | None) -> tuple[float, float]:
     remedy = PERCENT if name == "damping" else "give a value, or (mean, standard deviation)"
     pair = np.atleast_1d(check.numbers(name, value, least=0, remedy=remedy))
     if pair.shape not in ((1,), (2,)):
         raise ValueError(f"{name} must be a value or (mean, standard deviation), got shape {pair.shape}; {remedy}")
-    mean = check.number(name, pair[0], above=0 if name != "damping" else None, below=most, remedy=remedy)
+    mean = check.number(name, pair[0], above=0 if name != "damping" else None, below=below, remedy=remedy)
     return mean, float(pair[1]) if len(pair) == 2 else 0.0

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from string import ascii_lowercase
 from typing import Any
 
 import control as ct
@@ -56,15 +57,23 @@ def one_axes(ax: Axes | None) -> Axes:
     return check.instance("ax", ax, Axes, "make one with matplotlib.pyplot.subplots()")
 
 
-def several_axes(ax: Sequence[Axes] | np.ndarray | None, count: int, figsize: tuple[float, float]) -> list[Axes]:
-    """The axes given, or those of a new figure with one panel above the other."""
+def several_axes(
+    ax: Sequence[Axes] | np.ndarray | None, rows: int, figsize: tuple[float, float], columns: int = 1,
+) -> np.ndarray:
+    """The axes given, or those of a new figure, shape (rows, columns)."""
     if ax is None:
-        ax = plt.subplots(count, 1, figsize=figsize, layout="constrained")[1]
+        ax = plt.subplots(rows, columns, figsize=figsize, sharey="row", layout="constrained")[1]
     axes = [one_axes(one) for one in np.ravel(np.asarray(ax, dtype=object))]
-    if len(axes) != count:
-        raise ValueError(f"ax must hold {count} axes, got {len(axes)}; "
-                         f"make them with matplotlib.pyplot.subplots({count}, 1)")
-    return axes
+    if len(axes) != rows * columns:
+        raise ValueError(f"ax must hold {rows * columns} axes, got {len(axes)}; "
+                         f"make them with matplotlib.pyplot.subplots({rows}, {columns})")
+    return np.array(axes, dtype=object).reshape(rows, columns)
+
+
+def head(axes: Iterable[Axes], titles: Iterable[str]) -> None:
+    """Letter and title at the upper left of each panel, beside the legend."""
+    for ax, letter, title in zip(axes, ascii_lowercase, titles, strict=False):
+        ax.set_title(f"({letter}) {title}", loc="left", fontsize="medium")
 
 
 def legend_above(ax: Axes, columns: Sequence[Sequence[Handle]], title: str | None = None) -> Legend:
@@ -84,10 +93,10 @@ def grid(ax: Axes) -> None:
 
 
 def control_plot(
-    lines: Sequence[list[Line2D]], axes: Sequence[Axes], legends: Sequence[Legend | None],
+    lines: Sequence[list[Line2D]], axes: np.ndarray, legends: Sequence[Legend | None],
 ) -> ct.ControlPlot:
-    """The host's container, one row per panel."""
-    held = np.empty((len(axes), 1), dtype=object)
-    for row, panel in enumerate(lines):
-        held[row, 0] = panel
-    return ct.ControlPlot(held, np.array([axes]).T, axes[0].figure, legend=np.array([legends], dtype=object).T)
+    """The host's container; its lines and legends have the shape of the axes, filled row by row."""
+    held, legend = np.empty(axes.size, dtype=object), np.empty(axes.size, dtype=object)
+    for i, panel in enumerate(lines):
+        held[i], legend[i] = list(panel), legends[i]
+    return ct.ControlPlot(held.reshape(axes.shape), axes, axes.flat[0].figure, legend=legend.reshape(axes.shape))

@@ -68,11 +68,10 @@ def assessment_figure(
     (3, 1)
     """
     axes = canvas.several_axes(ax, 3, figsize=(10.0, 9.0))
-    panels = [frf_plot(frfs, labels=BRIDGES, effective=effective, ax=axes[0]),
-              response_plot(responses, labels=labels, ax=axes[1]),
-              convergence_plot(ensembles, labels=labels, ax=axes[2])]
-    heads = "Frequency response", "Acceleration", f"Convergence of {ensembles[0].rule.labels[0]}"
-    for axis, letter, head in zip(axes, "abc", heads, strict=True):
-        axis.set_title(f"({letter}) {head}", loc="left", fontsize="medium")
-    axes[0].figure.suptitle(title)
+    panels = [frf_plot(frfs, labels=BRIDGES, effective=effective, ax=axes[0, 0]),
+              response_plot(responses, labels=labels, ax=axes[1, 0]),
+              convergence_plot(ensembles, labels=labels, ax=axes[2, 0])]
+    settles = f"Convergence of {ensembles[0].rule.labels[0]}"
+    canvas.head(axes.flat, ["Frequency response", "Acceleration", settles])
+    axes[0, 0].figure.suptitle(title)
     return canvas.control_plot([one.lines[0, 0] for one in panels], axes, [one.legend[0, 0] for one in panels])

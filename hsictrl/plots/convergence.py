@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import control as ct
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl.plots import _canvas as canvas
@@ -54,29 +56,25 @@ def convergence_plot(
     labels = canvas.names(labels, [study.rule.labels[0] for study in studies])
     ax = canvas.one_axes(ax)
     canvas.grid(ax)
-    lines = [_running(ax, i, *pair) for i, pair in enumerate(zip(studies, labels, strict=True))]
-    bands = [_interval(ax, i, study) for i, study in enumerate(studies)]
-    limits = [line for i, study in enumerate(studies) for line in _tolerance(ax, i, study)]
+    drawn = [_settling(ax, i, *pair) for i, pair in enumerate(zip(studies, labels, strict=True))]
+    lines, bands, limits = zip(*drawn, strict=True)
     ax.set(xlabel="Number of trials [-]", ylabel=quantity)
-    legend = canvas.legend_above(ax, [lines, bands, limits[::2]])
-    return canvas.control_plot([[*lines, *limits]], [ax], [legend])
+    legend = canvas.legend_above(ax, [lines, bands, [upper for upper, _ in limits]])
+    return canvas.control_plot([[*lines, *(line for pair in limits for line in pair)]], np.array([[ax]]), [legend])
 
 
-def _running(ax: Axes, index: int, study: Ensemble, label: str) -> Line2D:
-    history = study.history()
-    return ax.plot(history.trials, history.estimate, linewidth=2.0, label=label, **canvas.style(index))[0]
+def _settling(ax: Axes, index: int, study: Ensemble, label: str) -> tuple[Line2D, PolyCollection, list[Line2D]]:
+    """The running estimate, its interval, and the limits of the tolerance: upper and lower."""
+    history, level = study.history(), _rule(study).confidence
+    line, = ax.plot(history.trials, history.estimate, linewidth=2.0, label=label, **canvas.style(index))
+    band = ax.fill_between(history.trials, history.low, history.high, color=canvas.colour(index), alpha=0.25,
+                           linewidth=0, label=f"{100 * level:g} % interval")
+    return line, band, _tolerance(ax, index, study, history.trials[[0, -1]])
 
 
-def _interval(ax: Axes, index: int, study: Ensemble) -> PolyCollection:
-    history, label = study.history(), f"{100 * _rule(study).confidence:g} % interval"
-    return ax.fill_between(history.trials, history.low, history.high, color=canvas.colour(index), alpha=0.25,
-                           linewidth=0, label=label)
-
-
-def _tolerance(ax: Axes, index: int, study: Ensemble) -> list[Line2D]:
-    """The limit above and the limit below; one entry in the legend stands for both."""
-    share, ends = _rule(study).tolerance, study.history().trials[[0, -1]]
-    return [ax.plot(ends, [study.estimate * (1 + part)] * 2, color=canvas.colour(index), linestyle="dashed",
+def _tolerance(ax: Axes, index: int, study: Ensemble, ends: NDArray[np.int_]) -> list[Line2D]:
+    share = _rule(study).tolerance
+    return [ax.plot(ends, np.full(2, study.estimate * (1 + part)), color=canvas.colour(index), linestyle="dashed",
                     linewidth=1.0, label=f"±{100 * share:g} % tolerance")[0] for part in (share, -share)]
 
 
@@ -92,4 +90,4 @@ def _checked(ensembles: object) -> list[Ensemble]:
 
 def _rule(study: Ensemble) -> PercentileRule | MeanRule:
     """The rule of a study of one estimate."""
-    return check.instance("rule of each ensemble", study.rule, (PercentileRule, MeanRule), "draw one estimate at a time")
+    return check.instance("rule of each ensemble", study.rule, (PercentileRule, MeanRule), "draw one estimate each")

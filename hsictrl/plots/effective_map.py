@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
@@ -30,8 +31,8 @@ def effective_map_plot(
     frequencies : array_like, shape (n,)
         Frequencies of the empty bridge f_B [Hz].
     statistics : mapping of str to mapping
-        For each label, "frequency" f_eff [Hz] and "damping" ξ_eff [-], arrays of shape (3, n): mean, 5 % and
-        95 % percentile.
+        For each label, "frequency" f_eff/f_B and "damping" ξ_eff, arrays of shape (3, n): mean, 5 % and
+        95 % percentile [-].
     ax : array or sequence of matplotlib.axes.Axes, optional
         Two axes, for f_eff/f_B and for ξ_eff; those of a new figure if not given.
 
@@ -48,21 +49,74 @@ def effective_map_plot(
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> found = {"μ = 0.1": {"frequency": [[0.95, 1.9], [0.94, 1.8], [0.96, 2.0]],
+    >>> found = {"μ = 0.1": {"frequency": [[0.95, 0.95], [0.94, 0.90], [0.96, 1.00]],
     ...                      "damping": [[0.005, 0.012], [0.005, 0.010], [0.006, 0.014]]}}
     >>> plot = effective_map_plot([1.0, 2.0], found, ax=Figure().subplots(2, 1))
     >>> [line.get_ydata().tolist() for line in plot.lines[:, 0][1]]     # ξ_eff [%]
     [[0.5, 1.2]]
     """
-    hertz = check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give f_B in Hz")
-    found = {label: _checked(label, one, len(hertz)) for label, one in statistics.items()}
-    axes = canvas.several_axes(ax, 2, figsize=(8.0, 7.0))
-    ratios = _panel(axes[0], hertz, {label: frequency / hertz for label, (frequency, _) in found.items()})
-    percents = _panel(axes[1], hertz, {label: 100 * damping for label, (_, damping) in found.items()})
-    axes[0].set_ylabel(r"$f_\mathrm{eff}/f_B$ [-]")
-    axes[1].set(xlabel="Natural frequency of the empty bridge $f_B$ [Hz]", ylabel=r"$\xi_\mathrm{eff}$ [%]")
-    legend = canvas.legend_above(axes[0], [[pair] for pair in ratios], title="mean, and 5 % to 95 % as a band")
-    return canvas.control_plot([[mean for _, mean in panel] for panel in (ratios, percents)], axes, [legend, None])
+    found, axes = _found(frequencies, {"": statistics}), canvas.several_axes(ax, 2, figsize=(8.0, 7.0))
+    return _maps(np.asarray(frequencies), list(found.values()), axes)
+
+
+def effective_panels(
+    frequencies: ArrayLike, panels: Mapping[str, Mapping[str, Mapping[str, ArrayLike]]], *,
+    ax: np.ndarray | None = None,
+) -> ct.ControlPlot:
+    """Draw several maps as `effective_map_plot` does, side by side: the whole of figure 4.
+
+    Parameters
+    ----------
+    frequencies : array_like, shape (n,)
+        Frequencies of the empty bridge f_B [Hz].
+    panels : mapping of str to mapping
+        For the title of each column, the statistics that `effective_map_plot` takes [-].
+    ax : array of matplotlib.axes.Axes, optional
+        Two rows of axes, a column per map; those of a new figure if not given.
+
+    Returns
+    -------
+    control.ControlPlot
+        Two rows, a column per map; the legend is that of the last map.
+
+    Raises
+    ------
+    ValueError
+        If a statistic is missing or has another shape, or `ax` holds more or fewer axes.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> rows = [[0.95, 0.95], [0.94, 0.90], [0.96, 1.0]]
+    >>> found = {"μ = 0.1": {"frequency": rows, "damping": rows}}
+    >>> plot = effective_panels([1.0, 2.0], {"ξ_B = 0.2 %": found, "ξ_B = 2 %": found}, ax=Figure().subplots(2, 2))
+    >>> [ax.get_title("left") for ax in plot.axes[0]]
+    ['(a) ξ_B = 0.2 %', '(b) ξ_B = 2 %']
+    """
+    found = _found(frequencies, panels)
+    axes = canvas.several_axes(ax, 2, figsize=(4.0 * len(found), 7.0), columns=len(found))
+    canvas.head(axes[0], found)
+    return _maps(np.asarray(frequencies), list(found.values()), axes)
+
+
+def _maps(hertz: Array, found: list[dict[str, tuple[Array, Array]]], axes: np.ndarray) -> ct.ControlPlot:
+    ratios = [_panel(ax, hertz, {label: one for label, (one, _) in each.items()})
+              for ax, each in zip(axes[0], found, strict=True)]
+    percents = [_panel(ax, hertz, {label: 100 * one for label, (_, one) in each.items()})
+                for ax, each in zip(axes[1], found, strict=True)]
+    axes[0, 0].set_ylabel(r"$f_\mathrm{eff}/f_B$ [-]")
+    axes[1, 0].set_ylabel(r"$\xi_\mathrm{eff}$ [%]")
+    for ax in axes[1]:
+        ax.set_xlabel("Frequency of the empty bridge $f_B$ [Hz]")
+    legends: list[Legend | None] = [None] * axes.size
+    legends[axes.shape[1] - 1] = _legend(axes[0, -1], ratios[-1])
+    return canvas.control_plot([[mean for _, mean in panel] for panel in ratios + percents], axes, legends)
+
+
+def _legend(ax: Axes, drawn: list[BandAndMean]) -> Legend:
+    """Two columns, so that a title has room beside it."""
+    half = (len(drawn) + 1) // 2
+    return canvas.legend_above(ax, [drawn[:half], drawn[half:]], title="mean, and 5 % to 95 % as a band")
 
 
 def _panel(ax: Axes, hertz: Array, found: dict[str, Array]) -> list[BandAndMean]:
@@ -82,14 +136,24 @@ def _dark(index: int) -> tuple[float, ...]:
     return tuple(0.4 * part for part in to_rgb(canvas.colour(index)))
 
 
+def _found(
+    frequencies: ArrayLike, panels: Mapping[str, Mapping[str, Mapping[str, ArrayLike]]],
+) -> dict[str, dict[str, tuple[Array, Array]]]:
+    """The statistics of every panel and label, each checked."""
+    n = len(check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give f_B in Hz"))
+    if not panels or not all(panels.values()):
+        raise ValueError("statistics must hold at least one label, got none; give {label: {...}}")
+    return {title: {label: _checked(label, one, n) for label, one in each.items()} for title, each in panels.items()}
+
+
 def _checked(label: str, statistic: Mapping[str, ArrayLike], n: int) -> tuple[Array, Array]:
     """Both quantities of one label, each of shape (3, n)."""
-    if missing := {"frequency", "damping"} - set(statistic):
-        raise ValueError(f"statistics[{label!r}] must hold 'frequency' and 'damping', got none of {sorted(missing)}; "
-                         "give both")
-    frequency, damping = (_three_rows(f"statistics[{label!r}][{key!r}]", statistic[key], n)
-                          for key in ("frequency", "damping"))
-    return frequency, damping
+    for key in ("frequency", "damping"):
+        if key not in statistic:
+            raise ValueError(f"statistics[{label!r}] must hold 'frequency' and 'damping', got no {key!r}; give both")
+    name = f"statistics[{label!r}]"
+    return (_three_rows(f"{name}['frequency']", statistic["frequency"], n),
+            _three_rows(f"{name}['damping']", statistic["damping"], n))
 
 
 def _three_rows(name: str, values: ArrayLike, n: int) -> Array:

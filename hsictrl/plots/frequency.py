@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import control as ct
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
+from hsictrl import _checks as check
+from hsictrl._checks import Array
 from hsictrl.plots import _canvas as canvas
 from hsictrl.resonance import EffectiveProperties
 
@@ -61,7 +64,75 @@ def frf_plot(
     span = ax.dataLim.intervalx
     marks = [_mark(ax, one, canvas.colour(i) if paired else canvas.INK, span) for i, one in enumerate(found)]
     ax.set(xlabel="Frequency [Hz]", ylabel="Accelerance |H| [m/s² per N]", yscale="log")
-    return canvas.control_plot([[*lines, *marks]], [ax], [canvas.legend_above(ax, [lines, marks])])
+    return canvas.control_plot([[*lines, *marks]], np.array([[ax]]), [canvas.legend_above(ax, [lines, marks])])
+
+
+def normalised_frf_plot(
+    ratios: ArrayLike, panels: Mapping[str, Mapping[str, ct.FrequencyResponseData]], *,
+    empty: ct.FrequencyResponseData, ax: Sequence[Axes] | np.ndarray | None = None,
+) -> ct.ControlPlot:
+    """Draw accelerances of several bridges, each over multiples of its own frequency, in panels (fig. 3).
+
+    Parameters
+    ----------
+    ratios : array_like, shape (n,)
+        Frequency over that of the empty bridge, f/f_B [-].
+    panels : mapping of str to mapping
+        For the title of each panel, responses by their labels, taken at these multiples [m/s² per N].
+    empty : control.FrequencyResponseData
+        Of the empty bridge, taken at the same multiples; drawn in black in every panel [m/s² per N].
+    ax : array or sequence of matplotlib.axes.Axes, optional
+        One axes per panel; those of a new figure if not given.
+
+    Returns
+    -------
+    control.ControlPlot
+        One row per panel; the line of the empty bridge comes last, the legend is that of the first panel.
+
+    Raises
+    ------
+    ValueError
+        If there is no panel, a response has another length than the ratios, or `ax` holds more or fewer axes.
+
+    Examples
+    --------
+    >>> import hsictrl as hsi
+    >>> from matplotlib.figure import Figure
+    >>> bridge, ratios = hsi.reference_bridge(frequency=2.0), np.linspace(0.5, 1.5, 201)
+    >>> occupied = hsi.frf(hsi.couple(bridge, hsi.Pedestrian(), np.linspace(0, 50, 75)), 2.0 * ratios)
+    >>> panels = {"mass ratio 0.1": {"occupied": occupied}}
+    >>> plot = normalised_frf_plot(ratios, panels, empty=hsi.frf(bridge, 2.0 * ratios), ax=Figure().subplots())
+    >>> plot.axes[0, 0].get_xlabel()
+    'Frequency ratio f/f_B [-]'
+    """
+    beta = check.numbers("ratios", ratios, above=0, ndim=1, remedy="give f/f_B")
+    curves = {title: _aligned([*each.values(), empty], len(beta)) for title, each in panels.items()}
+    if not panels:
+        raise ValueError("panels must hold at least one panel, got none; give {title: {label: response}}")
+    axes = canvas.several_axes(ax, len(panels), figsize=(8.0, 1.0 + 3.0 * len(panels)))
+    lines = [_normalised(one, beta, each, [*panels[title], "empty bridge"])
+             for one, (title, each) in zip(axes.flat, curves.items(), strict=True)]
+    canvas.head(axes.flat, panels)
+    axes[-1, 0].set_xlabel("Frequency ratio f/f_B [-]")
+    legend = canvas.legend_above(axes[0, 0], [lines[0][i:i + 2] for i in range(0, len(lines[0]), 2)])
+    return canvas.control_plot(lines, axes, [legend, *[None] * (len(lines) - 1)])
+
+
+def _normalised(ax: Axes, beta: Array, curves: list[ct.FrequencyResponseData], labels: list[str]) -> list[Line2D]:
+    """All but the last in colours, the last in black."""
+    canvas.grid(ax)
+    ax.set(ylabel="Accelerance |H| [m/s² per N]", yscale="log")
+    looks = [*map(canvas.style, range(len(curves) - 1)), {"color": canvas.INK, "linestyle": "solid"}]
+    return [ax.plot(beta, np.abs(curve.frdata[0, 0]), label=label, linewidth=1.6, **look)[0]
+            for curve, label, look in zip(curves, labels, looks, strict=True)]
+
+
+def _aligned(responses: list[ct.FrequencyResponseData], n: int) -> list[ct.FrequencyResponseData]:
+    for curve in _checked(responses):
+        if len(curve.omega) != n:
+            raise ValueError(f"each response must have {n} frequencies, one per ratio, got {len(curve.omega)}; "
+                             "compute it with hsictrl.frf at ratios times f_B")
+    return responses
 
 
 def _curve(ax: Axes, index: int, response: ct.FrequencyResponseData, label: str) -> Line2D:

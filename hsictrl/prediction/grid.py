@@ -49,7 +49,7 @@ class Grid:
     def at(cls, times: Array, start: float, highest_force: float, highest_mode: float) -> Grid:
         """For given times: forces are sampled at these, and between them where the forces ask for it."""
         given = (times[-1] - times[0]) / (len(times) - 1)
-        return cls(times=times, start=start, coarser=int(np.ceil(given / _limit(highest_force, highest_mode))))
+        return cls(times=times, start=start, coarser=int(np.ceil(given / _limit(highest_force, highest_mode) - 1e-9)))
 
     @property
     def given(self) -> float:

@@ -245,7 +245,7 @@ def _response(system: OccupiedBridge, traffic: Traffic, lines: Lines, grid: Grid
     n, growth = _period(grid, decay)
     fading = np.exp(-growth * grid.step * np.arange(grid.count))
     spectrum = np.fft.rfft(modal_force(system.bridge, traffic.walkers, lines, grid) * fading, n)
-    s = growth + 2j * np.pi * np.fft.rfftfreq(n, grid.step)
+    s = np.asarray(growth + 2j * np.pi * np.fft.rfftfreq(n, grid.step), dtype=np.complex128)
     return grid.read(system.respond(s, spectrum), growth)
 
 

@@ -128,7 +128,7 @@ def effective(
     try:
         tops = curve.peaks(limits)
     except np.linalg.LinAlgError:
-        raise _unbounded(limits) from None
+        raise _unbounded(f"between {limits[0] / (2 * np.pi):.3g} and {limits[1] / (2 * np.pi):.3g} Hz") from None
     if not len(tops):
         raise ValueError(f"the band must hold a peak of |H|, got none between {limits[0] / (2 * np.pi):.3g} and "
                          f"{limits[1] / (2 * np.pi):.3g} Hz; widen it, or draw frf() to see where the peak is")
@@ -139,7 +139,7 @@ def _described(curve: Curve, tops: np.ndarray, method: str) -> EffectiveProperti
     heights = curve.magnitude(tops)
     order = np.argsort(-heights)
     if 2 * curve.modal_mass * heights[order[0]] > UNBOUNDED:
-        raise _unbounded((tops[order[0]], tops[order[0]]))
+        raise _unbounded(f"at {tops[order[0]] / (2 * np.pi):.4g} Hz")
     omega, damping = _read(curve, float(tops[order[0]]), float(heights[order[0]]), method)
     others = tuple((float(tops[i] / (2 * np.pi)), float(heights[i])) for i in order[1:])
     return EffectiveProperties(frequency=omega / (2 * np.pi), damping=damping, peak=float(heights[order[0]]),
@@ -179,10 +179,9 @@ def _hertz_band(band: Any, curve: Curve) -> tuple[float, float]:
     return omega
 
 
-def _unbounded(omega: tuple[float, float]) -> ValueError:
-    low, high = omega[0] / (2 * np.pi), omega[1] / (2 * np.pi)
-    return ValueError("effective properties need damping, got a peak of |H| without bound "
-                      f"between {low:.4g} and {high:.4g} Hz; give the bridge a damping ratio above 0")
+def _unbounded(where: str) -> ValueError:
+    return ValueError(f"effective properties need damping, got a peak of |H| without bound {where}; "
+                      "give the bridge a damping ratio above 0")
 
 
 def _pair(band: Any) -> tuple[float, float]:

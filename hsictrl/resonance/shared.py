@@ -11,7 +11,8 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.coupling import CondensedCrowd
 
-NODES, POINTS, STEPS = 400, 1200, 5
+POINTS, STEPS = 1200, 5
+LIGHTEST = 0.005      # lighter bodies resonate between the points of the grid
 
 
 def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tuple[Array, Array]:
@@ -51,6 +52,8 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
     if crowd.rows.shape[1] != 1:
         raise ValueError(f"the crowd must stand on one mode, got {crowd.rows.shape[1]}; "
                          "use effective() for bridges with several")
+    check.numbers("the crowd's damping", crowd.people.damping, least=LIGHTEST,
+                  remedy="use effective() for bodies with less")
     band = _band(crowd, omega_b)
     mass = _tabulated_mass(crowd, band)
     start = _grid_minimum(mass, band, omega_b, xi)
@@ -66,7 +69,9 @@ def _band(crowd: CondensedCrowd, omega_b: Array) -> tuple[float, float]:
 
 
 def _tabulated_mass(crowd: CondensedCrowd, band: tuple[float, float]) -> CubicSpline:
-    nodes = np.geomspace(0.9 * band[0], 1.1 * band[1], NODES)
+    """1 + S as a spline, with nodes as close as the narrowest resonance of a body asks for."""
+    width = float(np.min(crowd.people.damping, initial=0.3))
+    nodes = np.geomspace(0.9 * band[0], 1.1 * band[1], int(130 / width))
     return CubicSpline(nodes, 1 + crowd.apparent_mass(1j * nodes)[:, 0, 0])
 
 

@@ -1,0 +1,17 @@
+"""The command ``hsictrl``: words in, one call, one table or one file out."""
+
+import typer
+
+from hsictrl.cli import assess, effective, paper
+
+app = typer.Typer(
+    name="hsictrl", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
+    pretty_exceptions_enable=False, help="Footbridges under crowds: human-structure interaction, by python-control.")
+app.command()(assess.assess)
+app.command()(effective.effective)
+app.command()(paper.paper)
+
+
+def main() -> None:
+    """Run the command on the words it was called with, and exit."""
+    app(prog_name="hsictrl")

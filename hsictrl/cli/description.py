@@ -1,0 +1,210 @@
+"""What is assessed, read from a TOML file.
+
+Every table and key may be left out unless a kind needs it; what is left out is as in section 4.2 of the paper.
+Unknown keys are refused. An example::
+
+    seed = 1
+
+    [bridge]
+    kind = "simply_supported"
+    length = 50.0               # m
+    width = 3.0                 # m
+    mass = 50e3                 # kg, of the whole bridge
+    frequency = 3.25            # Hz
+    damping = 0.005             # a fraction; or one per mode
+
+    [traffic]
+    density = [0.2, 0.5]        # persons/m², a row each; or persons = 15
+    weight = 700.0              # N
+
+    [traffic.population]
+    frequency = [3.25, 0.32]    # Hz: a number, or [mean, standard deviation]
+
+    [force]
+    model = "young"
+    values = "mean"
+
+===================  ============================================================================================
+``[bridge]`` kind    keys (those after the semicolon may be left out)
+===================  ============================================================================================
+"reference"          ; frequency, damping, modal_mass
+"simply_supported"   length, width, mass, frequency, damping; n_modes
+"beam"               spans, width, mass, frequency, damping; ends, n_modes
+``[traffic]``        ; density or persons, speed, step_frequency (a number or [mean, sd]), weight
+``[.population]``    ; frequency, damping, mass (a number or [mean, sd]), sprung_ratio
+``[force]`` model    keys
+"zivanovic"          ; spacing, scaling
+"young"              ; values
+"harmonic"           factors; phases
+===================  ============================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, final
+
+from hsictrl import _checks as check
+from hsictrl.bridge import Footbridge, reference_bridge
+from hsictrl.cli import schema
+from hsictrl.cli.schema import Keys, Table
+from hsictrl.crowd import CrowdFlow
+from hsictrl.pedestrian import Population
+from hsictrl.walking import HarmonicForce, WalkingForce, YoungForce, ZivanovicForce
+
+DENSITIES = (0.2, 0.5, 0.8, 1.0, 1.5)   # persons/m², section 4.2
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Description:
+    """What is assessed: one bridge under several flows of people.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flows : tuple of CrowdFlow
+        A row of the result each.
+    force : WalkingForce
+        Walking force.
+    seed : int
+        Seed of all trials [-].
+
+    Examples
+    --------
+    >>> [flow.density for flow in Description().flows]
+    [0.2, 0.5, 0.8, 1.0, 1.5]
+    """
+
+    bridge: Footbridge = field(default_factory=reference_bridge)
+    flows: tuple[CrowdFlow, ...] = tuple(CrowdFlow(density=density) for density in DENSITIES)
+    force: WalkingForce = field(default_factory=ZivanovicForce)
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        check.whole("seed", self.seed, least=0, remedy="give any other whole number")
+        for flow in self.flows:
+            if not flow.persons_on(self.bridge):
+                raise ValueError(f"density must put at least one person on the deck of {self.bridge.area:g} m², got "
+                                 f"{flow}; give a higher one")
+
+    def at_densities(self, densities: list[float]) -> Description:
+        """The same bridge and people in flows of other densities.
+
+        Parameters
+        ----------
+        densities : list of float
+            Pedestrian densities [1/m²].
+
+        Returns
+        -------
+        Description
+
+        Examples
+        --------
+        >>> len(Description().at_densities([0.2, 0.3]).flows)
+        2
+        """
+        like = self.flows[0]
+        return replace(self, flows=tuple(replace(like, density=density, persons=None) for density in densities))
+
+
+def read_description(path: Path) -> Description:
+    """Read a description from a TOML file.
+
+    Parameters
+    ----------
+    path : Path
+        The file; the format is at the top of `hsictrl.cli.description`.
+
+    Returns
+    -------
+    Description
+
+    Raises
+    ------
+    ValueError
+        If the file can't be read or isn't TOML, or a key is unknown, missing, of the wrong type or physically
+        impossible; the message names the file, the line and the key.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "bridge.toml"
+    >>> _ = path.write_text('[bridge]\\nkind = "reference"\\nfrequency = 3.25\\n[traffic]\\npersons = [15, 75]')
+    >>> description = read_description(path)
+    >>> description.bridge.modes[0].frequency, [flow.persons for flow in description.flows]
+    (3.25, [15, 75])
+    """
+    top = Table.of(path)
+    values = top.read({**dict.fromkeys(PARTS, schema.TABLE), "seed": schema.WHOLE})
+    parts = {name: make(top.table(key)) for key, (name, make) in PARTS.items() if key in values}
+    return top.make(Description, parts | {key: value for key, value in values.items() if key == "seed"})
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """What makes a thing of one kind, from which keys."""
+
+    make: Callable[..., Any]
+    needs: Keys = field(default_factory=dict)
+    may: Keys = field(default_factory=dict)
+
+
+_BEAM: Keys = {"width": schema.NUMBER, "mass": schema.NUMBER, "frequency": schema.NUMBER, "damping": schema.ONE_OR_MORE}
+_BRIDGES = {
+    "reference": _Kind(reference_bridge, may=dict.fromkeys(("frequency", "damping", "modal_mass"), schema.NUMBER)),
+    "simply_supported": _Kind(Footbridge.simply_supported, {"length": schema.NUMBER, **_BEAM},
+                              {"n_modes": schema.WHOLE}),
+    "beam": _Kind(Footbridge.beam, {"spans": schema.NUMBERS, **_BEAM},
+                  {"ends": schema.ENDS, "n_modes": schema.WHOLE}),
+}
+_FORCES = {
+    "zivanovic": _Kind(ZivanovicForce, may={"spacing": schema.NUMBER, "scaling": schema.TEXT}),
+    "young": _Kind(YoungForce, may={"values": schema.TEXT}),
+    "harmonic": _Kind(HarmonicForce, {"factors": schema.NUMBERS}, {"phases": schema.NUMBERS}),
+}
+_TRAFFIC: Keys = {"density": schema.ONE_OR_MORE, "persons": schema.COUNTS, "speed": schema.NUMBER,
+                  "step_frequency": schema.NORMAL, "weight": schema.NUMBER, "population": schema.TABLE}
+_POPULATION: Keys = {**dict.fromkeys(("frequency", "damping", "mass"), schema.NORMAL), "sprung_ratio": schema.NUMBER}
+
+
+def _bridge(table: Table) -> Footbridge:
+    bridge: Footbridge = _of_kind(table, "kind", _BRIDGES)
+    return bridge
+
+
+def _force(table: Table) -> WalkingForce:
+    force: WalkingForce = _of_kind(table, "model", _FORCES)
+    return force
+
+
+def _of_kind(table: Table, key: str, kinds: dict[str, _Kind]) -> Any:
+    """What a table describes, when one of its keys says of which kind it is."""
+    name = table.make(partial(check.choice, key, options=tuple(kinds)), {"value": table.values.get(key)})
+    kind = kinds[name]
+    values = table.read({key: schema.TEXT, **kind.needs, **kind.may}, needs=kind.needs)
+    return table.make(kind.make, {name: value for name, value in values.items() if name != key})
+
+
+def _flows(table: Table) -> tuple[CrowdFlow, ...]:
+    values = table.read(_TRAFFIC)
+    if "population" in values:
+        values["population"] = _population(table.table("population"))
+    counted = "persons" if "persons" in values and "density" not in values else "density"
+    rows = values.pop(counted, DENSITIES)
+    rows = rows if isinstance(rows, tuple) else (rows,)
+    return tuple(table.make(CrowdFlow, {**values, counted: row}) for row in rows)
+
+
+def _population(table: Table) -> Population:
+    return table.make(partial(replace, Population.walking()), table.read(_POPULATION))
+
+
+PARTS: dict[str, tuple[str, Callable[[Table], Any]]] = {
+    "bridge": ("bridge", _bridge), "traffic": ("flows", _flows), "force": ("force", _force)}

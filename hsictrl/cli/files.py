@@ -1,0 +1,42 @@
+"""Files that are written whole or not at all, in folders that are checked before the long work."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import typer
+
+
+def checked_folder(folder: Path) -> Path:
+    """Return the folder if files can be written into it."""
+    if not folder.is_dir():
+        raise ValueError(f"the output folder must exist, got {folder}; make it first")
+    if not os.access(folder, os.W_OK):
+        raise ValueError(f"the output folder must be writable, got {folder}; choose another")
+    return folder
+
+
+def checked_figure(path: Path) -> Path:
+    """Return the path if a figure can be written there."""
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    endings = sorted(FigureCanvasBase.get_supported_filetypes())
+    if path.suffix.lstrip(".") not in endings or path.is_dir():
+        raise ValueError(f"a figure must be a file that ends in one of .{', .'.join(endings)}, got {path}; rename it")
+    checked_folder(path.parent)
+    return path
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a draft beside `path`, which takes its place when it has been written without an error."""
+    draft = path.with_name(f".{os.getpid()}-{path.name}")
+    try:
+        yield draft
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
+    typer.echo(f"wrote {path}", err=True)

@@ -1,0 +1,99 @@
+"""What a command prints on stdout: a table with notes, JSON or CSV."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+from rich.console import Console
+from rich.table import Table
+
+from hsictrl import __version__
+from hsictrl.bridge import Footbridge
+from hsictrl.cli.description import Description
+
+PIPED_WIDTH = 120   # where no terminal says how wide it is
+Rows = list[dict[str, Any]]
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """Rows of numbers, and what a reader needs to understand them.
+
+    Parameters
+    ----------
+    description : Description
+        What was studied.
+    settings : dict
+        How it was studied: further settings for JSON, units in the keys.
+    rows : list of dict
+        The numbers, units in the keys.
+    table : rich.table.Table
+        The same for reading.
+    notes : sequence of str
+        Lines below the table.
+    """
+
+    description: Description
+    settings: dict[str, Any]
+    rows: Rows
+    table: Table
+    notes: Sequence[str]
+
+    def show(self, *, as_json: bool, as_csv: bool) -> None:
+        """Print JSON, CSV or the table."""
+        if as_json:
+            print_json({"bridge": _bridge(self.description.bridge), "settings": self._settings(), "rows": self.rows})
+        elif as_csv:
+            print_csv(self.rows)
+        else:
+            print_table(self.table, self.notes)
+
+    def _settings(self) -> dict[str, Any]:
+        return {**self.settings, "seed": self.description.seed, "force": repr(self.description.force),
+                "flows": list(map(repr, self.description.flows)), "hsictrl": __version__}
+
+
+def one_form(as_json: bool, as_csv: bool) -> None:
+    """Refuse to print two forms at once."""
+    if as_json and as_csv:
+        raise ValueError("the output must have one form, got --json and --csv; leave one of them out")
+
+
+def print_json(document: Any) -> None:
+    """Print JSON; what is not a number is null."""
+    print(json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def print_csv(rows: Rows) -> None:
+    """Print CSV with every digit."""
+    writer = csv.DictWriter(sys.stdout, fieldnames=list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(_plain(rows))
+
+
+def print_table(table: Table, notes: Sequence[str]) -> None:
+    """Print a table as wide as the terminal, and what there is to say about it."""
+    console = Console(width=None if sys.stdout.isatty() else PIPED_WIDTH, highlight=False, markup=False)
+    console.print(table)
+    console.print("", *notes, sep="\n")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _bridge(bridge: Footbridge) -> dict[str, Any]:
+    modes = [{"frequency_hz": mode.frequency, "damping": mode.damping, "modal_mass_kg": mode.modal_mass}
+             for mode in bridge.modes]
+    return {"length_m": bridge.length, "width_m": bridge.width, "mass_kg": bridge.mass, "modes": modes}

@@ -1,0 +1,78 @@
+"""``hsictrl paper``: figures and claims of the paper."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import JustifyMethod
+from rich.table import Table
+
+from hsictrl import _checks as check
+from hsictrl.cli import options
+from hsictrl.cli.endings import failing, refusing
+from hsictrl.cli.files import checked_folder, whole_file
+from hsictrl.cli.outcome import print_json, print_table
+from hsictrl.cli.tables import Column, Row, significant, table
+from hsictrl.cli.workers import checked_processes, workers
+
+if TYPE_CHECKING:
+    from hsictrl.paper import Report
+
+
+def paper(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="fig3, fig4 or claims.")],
+    recompute: Annotated[bool, typer.Option("--recompute", help="Compute anew, not from committed results.")] = False,
+    processes: options.Processes = 1,
+    output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where the figure and its numbers go.")] = Path(),
+    as_json: options.AsJson = False,
+) -> None:
+    """Figures and claims of Van Nimmen et al. (2017).
+
+    A figure is written as NAME.png and its numbers as NAME.json; these, or the claims, are printed as a table.
+
+    Exit code: 0 when it worked, 1 when a trial failed, 2 for bad input, 130 when interrupted.
+    """
+    from hsictrl import paper as results  # only now: no other command needs it
+
+    with refusing():
+        check.choice("name", name, results.names())
+        processes = checked_processes(processes)
+        checked_folder(output)
+    with failing(), workers(processes) as executor:
+        report = results.compute(name, recompute=recompute, executor=executor)
+    _write(report, output)
+    if as_json:
+        print_json(report.rows)
+    else:
+        print_table(_table(report), [report.caption])
+
+
+def _write(report: Report, folder: Path) -> None:
+    """Write a figure and its numbers, if there is a figure."""
+    if report.draw is None:
+        return
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    with whole_file(folder / f"{report.name}.png") as draft:
+        report.draw().figure.savefig(draft)
+    with whole_file(folder / f"{report.name}.json") as draft:
+        draft.write_text(json.dumps(report.rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _table(report: Report) -> Table:
+    columns = [Column(key, "", partial(_cell, key), _justify(report.rows[0][key])) for key in report.columns]
+    return table(columns, report.rows)
+
+
+def _justify(value: Any) -> JustifyMethod:
+    return "left" if isinstance(value, str) else "right"
+
+
+def _cell(key: str, row: Row) -> str:
+    value = row[key]
+    return significant(value, 4) if isinstance(value, float) else "–" if value is None else str(value)

@@ -1,0 +1,354 @@
+"""Asserted on the data that is drawn, not on images; truth is what went in."""
+
+from collections.abc import Iterator
+
+import control as ct
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+
+import hsictrl as hsi
+from hsictrl.plots import (
+    assessment_figure,
+    convergence_plot,
+    effective_map_plot,
+    effective_panels,
+    frf_plot,
+    normalised_frf_plot,
+    response_plot,
+)
+from hsictrl.records import running_rms
+
+HERTZ = np.linspace(2.0, 5.0, 301)
+BRIDGE = hsi.reference_bridge(frequency=3.25)
+OCCUPIED = hsi.couple(BRIDGE, hsi.Pedestrian(damping=0.1), np.linspace(5, 45, 100))   # two competing peaks
+FRFS = [hsi.frf(BRIDGE, HERTZ), hsi.frf(OCCUPIED, HERTZ)]
+FOUND = [hsi.effective(BRIDGE), hsi.effective(OCCUPIED)]
+TIME = np.linspace(0.0, 10.0, 1001)
+
+
+def acceleration(amplitude: float, name: str | None) -> ct.TimeResponseData:
+    signal = amplitude * np.sin(2 * np.pi * 2.0 * TIME) * np.sin(np.pi * TIME / 10)
+    return ct.TimeResponseData(TIME, signal, issiso=True, sysname=name)
+
+
+def study(scale: float, rule: hsi.StopRule = hsi.PercentileRule(tolerance=0.2)) -> hsi.Ensemble:  # noqa: B008
+    return hsi.monte_carlo(lambda rng: rng.rayleigh(scale), rule=rule)
+
+
+RECORDS = [acceleration(2.0, "MF"), acceleration(0.5, "PMC")]
+STUDIES = [study(1.0), study(0.3)]
+MAP = {f"μ = {mu}": {"frequency": np.outer([1.0, 0.9, 1.1], np.ones(301)), "damping": np.full((3, 301), mu)}
+       for mu in (0.1, 0.2)}
+
+
+@pytest.fixture(autouse=True)
+def closed() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+@pytest.fixture
+def ax() -> Axes:
+    return plt.subplots(layout="constrained")[1]
+
+
+def entries(plot: ct.ControlPlot, row: int = 0) -> list[str]:
+    return [text.get_text() for text in plot.legend[row, 0].get_texts()]
+
+
+# what all of them share
+
+DRAWINGS = {
+    "frf": (1, lambda ax: frf_plot(FRFS, effective=FOUND, ax=ax)),
+    "response": (1, lambda ax: response_plot(RECORDS, ax=ax)),
+    "convergence": (1, lambda ax: convergence_plot(STUDIES, ax=ax)),
+    "assessment": (3, lambda ax: assessment_figure(
+        frfs=FRFS, effective=FOUND, responses=RECORDS, ensembles=STUDIES, title="Bridge", ax=ax)),
+    "map": (2, lambda ax: effective_map_plot(HERTZ, MAP, ax=ax)),
+    "normalised": (2, lambda ax: normalised_frf_plot(
+        HERTZ / 3.25, {"few": {"100": FRFS[1]}, "many": {"200": FRFS[1]}}, empty=FRFS[0], ax=ax)),
+}
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_without_axes_one_figure_is_made(name: str) -> None:
+    rows, draw = DRAWINGS[name]
+    plot = draw(None)
+    assert isinstance(plot, ct.ControlPlot)
+    assert plot.axes.shape == plot.lines.shape == (rows, 1)
+    assert plt.get_fignums() == [plot.figure.number]
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_given_axes_are_drawn_on_and_no_figure_is_made(name: str) -> None:
+    rows, draw = DRAWINGS[name]
+    figure, axes = plt.subplots(rows, 1)
+    plot = draw(axes)
+    assert plot.figure is figure
+    assert plt.get_fignums() == [figure.number]
+    assert list(plot.axes[:, 0]) == list(np.ravel(axes))
+    assert all(line.axes is axis for axis, lines in zip(plot.axes[:, 0], plot.lines[:, 0], strict=True)
+               for line in lines)
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_every_axis_has_a_unit(name: str) -> None:
+    rows, draw = DRAWINGS[name]
+    shown = [label for axis in draw(None).axes[:, 0] for label in (axis.get_xlabel(), axis.get_ylabel()) if label]
+    assert len(shown) >= rows + 1
+    assert all("[" in label and label.endswith("]") for label in shown)
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_legends_cover_no_data_and_lie_within_the_figure(name: str) -> None:
+    plot = DRAWINGS[name][1](None)
+    plot.figure.canvas.draw()
+    for axis, legend in zip(plot.axes[:, 0], plot.legend[:, 0], strict=True):
+        if legend is not None:
+            assert legend.get_window_extent().y0 >= axis.get_window_extent().y1 - 1
+            assert plot.figure.bbox.count_contains(legend.get_window_extent().corners()) == 4
+
+
+@pytest.mark.parametrize("name", ["assessment", "normalised"])
+def test_titles_of_panels_do_not_meet_the_legends(name: str) -> None:
+    plot = DRAWINGS[name][1](None)
+    plot.figure.canvas.draw()
+    for axis, legend in zip(plot.axes[:, 0], plot.legend[:, 0], strict=True):
+        if legend is not None:
+            assert not axis._left_title.get_window_extent().overlaps(legend.get_window_extent())
+
+
+# frequency
+
+def test_frf_draws_modulus_over_hertz(ax: Axes) -> None:
+    plot = frf_plot(FRFS, labels=["empty", "occupied"], ax=ax)
+    for line, response in zip(plot.lines[0, 0], FRFS, strict=True):
+        np.testing.assert_allclose(line.get_xdata(), HERTZ)
+        np.testing.assert_allclose(line.get_ydata(), abs(response.frdata[0, 0]))
+    assert (ax.get_yscale(), ax.get_xscale()) == ("log", "linear")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Frequency [Hz]", "Accelerance |H| [m/s² per N]")
+    assert entries(plot) == ["empty", "occupied"]
+
+
+def test_curves_differ_in_colour_and_in_dashes() -> None:
+    first, second = frf_plot(FRFS).lines[0, 0]
+    assert to_hex(first.get_color()) != to_hex(second.get_color())
+    assert first.get_linestyle() != second.get_linestyle()
+
+
+def test_effective_properties_are_marked_and_named(ax: Axes) -> None:
+    plot = frf_plot(FRFS, effective=FOUND, ax=ax)
+    for curve, mark, one in zip(plot.lines[0, 0][:2], plot.lines[0, 0][2:], FOUND, strict=True):
+        assert (*mark.get_xdata(), *mark.get_ydata()) == (one.frequency, one.peak)
+        assert mark.get_color() == curve.get_color()
+    assert entries(plot)[2].startswith(r"$f_\mathrm{eff}$ = 3.250 Hz, $\xi_\mathrm{eff}$ = 0.50 %")
+
+
+def hollow(ax: Axes) -> list[tuple[float, float]]:
+    return [(line.get_xdata()[0], line.get_ydata()[0]) for line in ax.lines if line.get_markerfacecolor() == "white"]
+
+
+def test_competing_peaks_are_hollow(ax: Axes) -> None:
+    plot = frf_plot(FRFS[1], effective=FOUND[1], ax=ax)
+    assert len(FOUND[1].competing) == 1
+    assert hollow(ax) == list(FOUND[1].competing)
+    assert entries(plot)[-1].endswith("hollow: competing")
+
+
+def test_competing_peaks_beyond_the_curves_do_not_stretch_the_axis(ax: Axes) -> None:
+    plot = frf_plot(hsi.frf(OCCUPIED, np.linspace(2.0, 3.0, 50)), effective=FOUND[1], ax=ax)
+    assert hollow(ax) == []
+    assert ax.get_xlim() == (2.0, 3.0)
+    assert "competing" not in entries(plot)[-1]
+
+
+def test_one_mark_for_two_curves_takes_neither_colour() -> None:
+    *curves, mark = frf_plot(FRFS, effective=FOUND[1]).lines[0, 0]
+    assert mark.get_color() not in {curve.get_color() for curve in curves}
+
+
+def test_frf_refusals() -> None:
+    two = hsi.frf(hsi.couple(BRIDGE, [], [], sense_at=[10.0, 25.0]), HERTZ)
+    with pytest.raises(ValueError, match=r"responses must have one input and one output, got 1 and 2; choose a pair"):
+        frf_plot(two)
+    with pytest.raises(TypeError, match="responses must be a FrequencyResponseData, got OccupiedBridge; compute"):
+        frf_plot(OCCUPIED)
+    with pytest.raises(TypeError, match="effective must be a EffectiveProperties, got float; compute"):
+        frf_plot(FRFS, effective=3.25)
+    with pytest.raises(ValueError, match="responses must hold at least one FrequencyResponseData, got none; compute"):
+        frf_plot([])
+    with pytest.raises(ValueError, match="labels must be one per curve, got 1 for 2; give as many"):
+        frf_plot(FRFS, labels="both")
+    with pytest.raises(TypeError, match="ax must be a Axes, got str; make one"):
+        frf_plot(FRFS, ax="here")
+    assert plt.get_fignums() == []
+
+
+def test_normalised_frf_draws_over_the_ratio_with_the_empty_bridge_in_black() -> None:
+    panels = {"few": {"100": FRFS[1]}, "many": {"200": FRFS[1], "300": FRFS[1]}}
+    plot = normalised_frf_plot(HERTZ / 3.25, panels, empty=FRFS[0])
+    few, many = plot.lines[:, 0]
+    assert [line.get_label() for line in many] == ["200", "300", "empty bridge"]
+    np.testing.assert_array_equal(few[0].get_xdata(), HERTZ / 3.25)
+    np.testing.assert_allclose(few[0].get_ydata(), abs(FRFS[1].frdata[0, 0]))
+    np.testing.assert_allclose(few[-1].get_ydata(), abs(FRFS[0].frdata[0, 0]))
+    assert few[-1].get_color() == many[-1].get_color() == "#222222"
+    assert [axis.get_title("left") for axis in plot.axes[:, 0]] == ["(a) few", "(b) many"]
+
+
+def test_normalised_frf_refusals() -> None:
+    with pytest.raises(ValueError, match="each response must have 3 frequencies, one per ratio, got 301; compute"):
+        normalised_frf_plot([0.9, 1.0, 1.1], {"few": {"100": FRFS[1]}}, empty=FRFS[0])
+    with pytest.raises(ValueError, match="panels must hold at least one panel, got none; give"):
+        normalised_frf_plot(HERTZ, {}, empty=FRFS[0])
+
+
+# time
+
+def test_response_draws_traces_running_rms_and_peaks(ax: Axes) -> None:
+    plot = response_plot(RECORDS, ax=ax)
+    lines = plot.lines[0, 0]
+    for record, trace, bold, peak in zip(RECORDS, lines[:2], lines[2:4], lines[4:], strict=True):
+        np.testing.assert_array_equal(trace.get_xdata(), TIME)
+        np.testing.assert_array_equal(trace.get_ydata(), record.outputs)
+        np.testing.assert_array_equal(bold.get_ydata(), running_rms(record))
+        assert bold.get_linewidth() > 2 * trace.get_linewidth()
+        assert abs(peak.get_ydata()[0]) == np.abs(record.outputs).max()
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Time [s]", "Acceleration [m/s²]")
+
+
+def test_response_names_systems_and_states_peaks() -> None:
+    shown = entries(response_plot(RECORDS))
+    assert shown[:4] == ["MF", "PMC", "running 1-s RMS", "running 1-s RMS"]
+    assert shown[4] == "peak 2.0 m/s² at 5.1 s"
+    assert entries(response_plot(acceleration(1.0, None)))[0] == "curve 0"
+    assert entries(response_plot(RECORDS[0], labels="without"))[0] == "without"
+
+
+def test_a_downward_peak_is_marked_where_it_is() -> None:
+    record = ct.TimeResponseData(np.array([0.0, 1.0, 2.0]), np.array([0.0, -2.0, 1.0]), issiso=True)
+    peak = response_plot(record).lines[0, 0][-1]
+    assert (*peak.get_xdata(), *peak.get_ydata()) == (1.0, -2.0)
+    assert peak.get_label() == "peak 2.0 m/s² at 1.0 s"
+
+
+def test_predictions_are_drawn_as_they_come() -> None:
+    walker = hsi.Walker(force=hsi.HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+    found = hsi.predict("MF", BRIDGE, hsi.Traffic([walker]), sense_at=[10.0])
+    np.testing.assert_array_equal(response_plot(found.response).lines[0, 0][0].get_ydata(), found.response.y[0])
+
+
+def test_response_refusals() -> None:
+    both = ct.TimeResponseData(TIME, np.zeros((2, 1001)), issiso=False)
+    with pytest.raises(ValueError, match="responses must have one output, got 2; predict with one point"):
+        response_plot(both)
+    with pytest.raises(TypeError, match="responses must be a TimeResponseData, got ndarray; give predict"):
+        response_plot(TIME)
+
+
+# studies
+
+def test_convergence_draws_history_and_tolerance(ax: Axes) -> None:
+    plot = convergence_plot(STUDIES, labels=["MF", "PMC"], ax=ax)
+    lines = plot.lines[0, 0]
+    for i, one in enumerate(STUDIES):
+        np.testing.assert_array_equal(lines[i].get_xdata(), one.history().trials)
+        np.testing.assert_array_equal(lines[i].get_ydata(), one.history().estimate)
+        limits = [line.get_ydata()[0] for line in lines[2 + 2 * i:4 + 2 * i]]
+        np.testing.assert_allclose(limits, [1.2 * one.estimate, 0.8 * one.estimate])
+    assert {line.get_linestyle() for line in lines[2:]} == {"--"}
+    assert entries(plot) == ["MF", "PMC", *["95 % interval"] * 2, *["±20 % tolerance"] * 2]
+
+
+def test_the_band_is_the_interval(ax: Axes) -> None:
+    convergence_plot(STUDIES[0], ax=ax)
+    corners, history = ax.collections[0].get_paths()[0].vertices, STUDIES[0].history()
+    drawn = np.isfinite(history.low) & np.isfinite(history.high)
+    assert {*corners[:, 1]} >= {*history.low[drawn], *history.high[drawn]}
+
+
+def test_quantity_names_the_vertical_axis() -> None:
+    assert convergence_plot(STUDIES[0]).axes[0, 0].get_ylabel() == "Peak acceleration [m/s²]"
+    assert convergence_plot(STUDIES[0], quantity="Mean [Hz]").axes[0, 0].get_ylabel() == "Mean [Hz]"
+
+
+def test_a_mean_is_named_by_its_rule() -> None:
+    assert entries(convergence_plot(study(1.0, hsi.MeanRule(tolerance=0.2))))[0] == "mean"
+
+
+def test_a_study_too_short_for_an_interval_is_drawn_all_the_same(ax: Axes) -> None:
+    short = hsi.monte_carlo(lambda rng: rng.rayleigh(), max_trials=10)
+    convergence_plot(short, ax=ax).figure.canvas.draw()
+
+
+def test_convergence_refusals() -> None:
+    rows = hsi.monte_carlo(lambda rng: rng.rayleigh(size=2), rule=hsi.MeanRule(tolerance=0.5))
+    with pytest.raises(ValueError, match=r"ensembles must hold one quantity, got samples of shape \(100, 2\); run one"):
+        convergence_plot(rows)
+    several = study(1.0, hsi.AllRules([hsi.MeanRule(tolerance=0.5)]))
+    with pytest.raises(TypeError, match="rule of each ensemble must be a PercentileRule or MeanRule, got AllRules"):
+        convergence_plot(several)
+    with pytest.raises(TypeError, match="ensembles must be a Ensemble, got ndarray; run hsictrl"):
+        convergence_plot(STUDIES[0].samples)
+
+
+# figures of several panels
+
+def test_assessment_figure_composes_the_three_plots() -> None:
+    plot = DRAWINGS["assessment"][1](None)
+    assert tuple(plot.figure.get_size_inches()) == (10.0, 9.0)
+    assert plot.figure.get_suptitle() == "Bridge"
+    heads = [axis.get_title("left") for axis in plot.axes[:, 0]]
+    assert heads == ["(a) Frequency response", "(b) Acceleration", "(c) Convergence of percentile 95"]
+    assert [entries(plot, row)[:2] for row in range(3)] == [["empty bridge", "occupied bridge"], *[["MF", "PMC"]] * 2]
+    assert [len(lines) for lines in plot.lines[:, 0]] == [4, 6, 6]
+
+
+def test_effective_map_draws_ratios_and_percents() -> None:
+    plot = effective_map_plot(HERTZ, MAP)
+    top, bottom = plot.axes[:, 0]
+    for mean, low_high in zip(plot.lines[0, 0], top.collections, strict=True):
+        np.testing.assert_allclose(mean.get_ydata(), 1.0)
+        np.testing.assert_allclose(np.unique(low_high.get_paths()[0].vertices[:, 1].round(12)), [0.9, 1.1])
+    assert [line.get_ydata()[0] for line in plot.lines[1, 0]] == pytest.approx([10.0, 20.0])
+    np.testing.assert_array_equal(plot.lines[1, 0][0].get_xdata(), HERTZ)
+    assert (entries(plot), plot.legend[1, 0]) == (["μ = 0.1", "μ = 0.2"], None)
+    assert "%" in bottom.get_ylabel()
+
+
+def test_effective_panels_stand_side_by_side() -> None:
+    plot = effective_panels(HERTZ, {"one": MAP, "two": MAP, "three": MAP})
+    assert plot.axes.shape == plot.lines.shape == plot.legend.shape == (2, 3)
+    assert [axis.get_title("left") for axis in plot.axes[0]] == ["(a) one", "(b) two", "(c) three"]
+    for j in range(3):
+        assert [line.axes for line in plot.lines[1, j]] == [plot.axes[1, j]] * 2
+        assert plot.lines[1, j][1].get_ydata()[0] == pytest.approx(20.0)
+    assert [legend is None for legend in plot.legend.flat] == [True, True, False, True, True, True]
+    plot.figure.canvas.draw()
+    title = plot.axes[0, 2]._left_title.get_window_extent()
+    assert not title.overlaps(plot.legend[0, 2].get_window_extent())
+
+
+def test_effective_panels_are_drawn_on_given_axes() -> None:
+    figure, axes = plt.subplots(2, 2)
+    plot = effective_panels(HERTZ, {"one": MAP, "two": MAP}, ax=axes)
+    assert plt.get_fignums() == [figure.number]
+    assert plot.axes.tolist() == axes.tolist()
+
+
+def test_effective_map_refusals() -> None:
+    with pytest.raises(ValueError, match=r"statistics\['a'\] must hold 'frequency' and 'damping', got no 'damping'"):
+        effective_map_plot([1.0], {"a": {"frequency": [[1.0]] * 3}})
+    with pytest.raises(ValueError, match=r"statistics\['a'\]\['damping'\] must have shape \(3, 1\), got \(2, 1\)"):
+        effective_map_plot([1.0], {"a": {"frequency": [[1.0]] * 3, "damping": [[0.1]] * 2}})
+    with pytest.raises(ValueError, match="statistics must hold at least one label, got none"):
+        effective_map_plot([1.0], {})
+    with pytest.raises(ValueError, match="ax must hold 2 axes, got 1; make them with"):
+        effective_map_plot(HERTZ, MAP, ax=plt.subplots()[1])
