@@ -14,7 +14,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.comfort import DesignResponse, comfort_class, design_acceleration
 from hsictrl.coupling import couple
 from hsictrl.crowd import CrowdFlow
-from hsictrl.prediction import MODELS, predict, predict_tuned, tune
+from hsictrl.prediction import MODELS, Prediction, predict, predict_tuned, tune
 from hsictrl.resonance import effective
 from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
@@ -57,9 +57,30 @@ class PeakTrial:
         check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
 
     def __call__(self, rng: np.random.Generator) -> float:
+        return self.prediction(rng).peak_acceleration
+
+    def prediction(self, rng: np.random.Generator) -> Prediction:
+        """The response behind the peak.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            Source of randomness; ``trial_rng(seed, i)`` for trial i of a study.
+
+        Returns
+        -------
+        Prediction
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> trial = PeakTrial(model="PMC", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
+        >>> trial.prediction(np.random.default_rng(1)).model
+        'PMC'
+        """
         traffic = self.flow.sample(self.bridge, rng=rng, force=self.force)
         forecast = predict_tuned if self.flow.step_frequency is None else predict
-        return forecast(self.model, self.bridge, traffic).peak_acceleration
+        return forecast(self.model, self.bridge, traffic)
 
 
 @final
@@ -219,7 +240,7 @@ def assess(
         label=f"{flow}, {model}") for model in ("MF", "PMC")}
     found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor)
     return Assessment(bridge=bridge, flow=flow, effective=found, without=peaks["MF"], within=peaks["PMC"],
-                      guide=guide, remarks=_remarks(bridge, flow, peaks))
+                      guide=guide, remarks=_remarks(bridge, flow, peaks | {"effective properties": found}))
 
 
 def study_effective(
@@ -313,8 +334,8 @@ def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", m
         crowd_modal_mass=PERSON_MASS * density * bridge.area * resonant.shape.mean_square, guide=guide)
 
 
-def _remarks(bridge: Footbridge, flow: CrowdFlow, peaks: dict[str, Ensemble]) -> tuple[str, ...]:
-    unsettled = tuple(f"{model}: {one.reason}" for model, one in peaks.items() if not one.converged)
+def _remarks(bridge: Footbridge, flow: CrowdFlow, ensembles: dict[str, Ensemble]) -> tuple[str, ...]:
+    unsettled = tuple(f"{name}: {one.reason}" for name, one in ensembles.items() if not one.converged)
     drawn = flow.sample(bridge, rng=np.random.default_rng(0))
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
     return (*dict.fromkeys(drawn.remarks + tuned), *unsettled)

@@ -58,27 +58,32 @@ def transfer(system, s):
     return (system.D + system.C @ x)[0, 0], -(system.C @ np.linalg.solve(matrix, x))[0, 0]
 
 
-def spectrum(system, hertz):
-    """|H| of a SISO system over many frequencies, by its eigenvectors."""
+def expanded(system):
+    """H and dH/ds of a SISO system as a function of the frequency [Hz], by its poles and residues: D + Σ r/(s − p)."""
     poles, vectors = np.linalg.eig(system.A)
-    shares = (system.C @ vectors)[0] * np.linalg.solve(vectors, system.B)[:, 0]
-    return np.abs(system.D[0, 0] + (shares / (2j * np.pi * np.asarray(hertz)[:, None] - poles)).sum(axis=1))
+    residues = (system.C @ vectors)[0] * np.linalg.solve(vectors, system.B)[:, 0]
+
+    def evaluate(hertz):
+        parts = 1 / (2j * np.pi * np.asarray(hertz)[..., None] - poles)
+        return system.D[0, 0] + parts @ residues, -(parts**2 @ residues)
+
+    return evaluate
 
 
 def peaks(system, low=0.1, high=40.0, points=40_000):
     """(frequency [Hz], |H|) of all local maxima, highest first: a fine grid, then the zero of d|H|²/dω."""
-    hertz = np.geomspace(low, high, points)
-    size = spectrum(system, hertz)
+    at, hertz = expanded(system), np.geomspace(low, high, points)
+    size = np.abs(at(hertz)[0])
     tops = 1 + np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:]))
     found = []
     for top in tops:
-        f = brentq(lambda f: _slope(system, f), hertz[top - 1], hertz[top + 1], xtol=1e-14, rtol=1e-14)
+        f = brentq(lambda f: slope(*at(f)), hertz[top - 1], hertz[top + 1], xtol=1e-14, rtol=1e-14)
         found.append((f, abs(transfer(system, 2j * np.pi * f)[0])))
     return sorted(found, key=lambda peak: -peak[1])
 
 
-def _slope(system, hertz):
-    value, growth = transfer(system, 2j * np.pi * hertz)
+def slope(value, growth):
+    """Half of d|H|²/dω from H and dH/ds."""
     return (1j * growth * np.conj(value)).real
 
 

@@ -83,9 +83,10 @@ def test_resonant_step_frequency_of_section_2_2(frequency, step, harmonic):
 
 @pytest.mark.parametrize(("density", "spread"), [(0.2, 0.175), (0.8, 0.175), (0.999, 0.175), (1.0, 0.0), (1.5, 0.0)])
 def test_step_frequencies_scatter_in_sparse_streams_only(density, spread):
-    steps = np.concatenate([drawn(CrowdFlow(density=density), seed).walkers.step_frequency for seed in range(5)])
+    steps = np.concatenate([drawn(CrowdFlow(density=density), seed).walkers.step_frequency for seed in range(60)])
     if spread:
         assert kstest(steps, norm(2.0, spread).cdf).pvalue > 0.01
+        assert np.std(steps) == pytest.approx(spread, rel=3 / np.sqrt(2 * len(steps)))
     else:
         np.testing.assert_array_equal(steps, 2.0)
 

@@ -25,6 +25,10 @@ def random_block(name, states, inputs, outputs, seed, *, feedthrough, dt=0):
                  inputs=[f"u[{i}]" for i in range(inputs)], outputs=[f"y[{j}]" for j in range(outputs)])
 
 
+def gain(name, value):
+    return ct.ss([], [], [], [[value]], name=name, inputs="in", outputs="out")
+
+
 def assert_same(ours, theirs, tolerance=1e-12):
     for part in "ABCD":
         expected = getattr(theirs, part)
@@ -38,7 +42,8 @@ def occupied_loop(join, unsprung):
     ports = ("y", "v", "a") if unsprung else ("y", "v")
     plant, bodies = bridge.ss(at=[20.0, 25.0]), people.ss(ports=ports)
     return plant, bodies, join(
-        [plant, bodies], connections=[[f"crowd.{port}", f"bridge.{port}"] for port in ports] + [["bridge.F", "crowd.F"]],
+        [plant, bodies],
+        connections=[["bridge.F", "crowd.F"], *([f"crowd.{port}", f"bridge.{port}"] for port in ports)],
         inplist=["bridge.F[0:2]"], outlist=["bridge.a"], inputs=["p[0]", "p[1]"], outputs=["acc[0]", "acc[1]"],
         name="loop")
 
@@ -93,7 +98,7 @@ def test_signals_that_meet_by_name():
 def test_the_same_object_twice_is_two_blocks(join):
     block = random_block("P", 2, 1, 1, 0, feedthrough=True)
     with pytest.warns(UserWarning, match="duplicate object found"):
-        loop = join([block, block], connections=[["P$copy.u", "P.y"]], inplist=["P.u"], outlist=["P$copy.y"])
+        loop = join([block, block], connections=[[(1, 0), (0, 0)]], inplist=[(0, 0)], outlist=[(1, 0)])
     series = block * block
     np.testing.assert_allclose(loop(1j), series(1j), rtol=1e-9)
     assert loop.nstates == 4
@@ -114,7 +119,7 @@ def test_unknown_keywords_are_refused(join):
 @pytest.mark.parametrize("join", [hsi.interconnect, ct.interconnect])
 def test_unknown_signals_are_refused(join):
     block = random_block("P", 1, 1, 1, 0, feedthrough=False)
-    with pytest.raises(ValueError, match="P.w"):
+    with pytest.raises(ValueError, match=r"P\.w"):
         join([block], connections=[["P.u", "P.w"]], inplist=["P.u"], outlist=["P.y"])
 
 
@@ -139,7 +144,7 @@ def test_any_well_posed_loop_is_the_hosts_feedback(n, m, seed):
     """Feedthrough in both directions, static blocks among them, against `control.feedback`."""
     P, K = (random_block(name, n, m, m, seed + i, feedthrough=True) for i, name in enumerate("PK"))
     loop = hsi.interconnect([P, K], connections=[["P.u", "-K.y"], ["K.u", "P.y"]], inplist=["P.u"],
-                            outlist=["P.y", "K.u", "P.u"] if False else ["P.y"])
+                            outlist=["P.y"])
     assert_same(loop, ct.feedback(P, K), 1e-10)
 
 
@@ -176,14 +181,6 @@ def test_the_result_serves_the_hosts_nonlinear_tools():
     assert_same(around, plain, 1e-6)
 
 
-def test_connection_table_names_the_blocks(capsys):
-    _, _, loop = occupied_loop(hsi.interconnect, unsprung=True)
-    loop.connection_table()
-    text = capsys.readouterr().out
-    assert "bridge" in text
-    assert "crowd" in text
-
-
 def test_nonlinear_blocks_fall_through_to_the_host():
     """A saturated actuator: the host's own class, simulated as the host does."""
     plant = random_block("P", 2, 1, 1, 0, feedthrough=False)
@@ -202,13 +199,11 @@ def test_nonlinear_blocks_fall_through_to_the_host():
 
 def test_an_ill_posed_loop_is_refused_by_the_names_of_its_signals():
     """2 · 0.5 = 1 around the loop; a third block beside it is not to blame."""
-    g, k = (ct.ss([], [], [], [[gain]], name=name, inputs="in", outputs="out") for name, gain in (("g", 2.0), ("k", 0.5)))
-    other = random_block("other", 2, 1, 1, 0, feedthrough=True)
-    with pytest.raises(ValueError, match=r"loop must have a solution, got none through .*; break it with dyn") as caught:
-        hsi.interconnect([g, other, k], connections=[["g.in", "k.out"], ["k.in", "g.out"], ["other.u", "g.out"]],
-                         inplist=["g.in"], outlist=["other.y"])
-    assert "g.in, k.in" in str(caught.value)
-    assert "other" not in str(caught.value)
+    g, k = gain("g", 2.0), gain("k", 0.5)
+    before, after = (random_block(name, 2, 1, 1, 0, feedthrough=True) for name in ("before", "after"))
+    with pytest.raises(ValueError, match=r"must have a solution, got none through g\.in, k\.in; break it with dyn"):
+        hsi.interconnect([before, g, after, k], inplist=["before.u"], outlist=["after.y"], connections=[
+            ["g.in", "k.out", "before.y"], ["k.in", "g.out"], ["after.u", "g.out"]])
 
 
 def test_a_negative_unsprung_mass_as_large_as_the_modal_mass_is_ill_posed():
@@ -221,8 +216,7 @@ def test_a_negative_unsprung_mass_as_large_as_the_modal_mass_is_ill_posed():
 
 
 def test_a_nearly_ill_posed_loop_is_still_solved():
-    g, k = (ct.ss([], [], [], [[gain]], name=name, inputs="in", outputs="out")
-            for name, gain in (("g", 1.0), ("k", 1 - 1e-9)))
+    g, k = gain("g", 1.0), gain("k", 1 - 1e-9)
     loop = hsi.interconnect([g, k], connections=[["g.in", "k.out"], ["k.in", "g.out"]], inplist=["g.in"],
                             outlist=["g.out"])
     assert loop.D[0, 0] == pytest.approx(1e9, rel=1e-6)

@@ -1,5 +1,7 @@
 """The command ``hsictrl``: words in, one call, one table or one file out."""
 
+import os
+
 import typer
 
 from hsictrl.cli import assess, effective, paper
@@ -14,4 +16,5 @@ app.command()(paper.paper)
 
 def main() -> None:
     """Run the command on the words it was called with, and exit."""
+    os.environ.setdefault("MPLBACKEND", "Agg")    # figures go into files; no screen is needed
     app(prog_name="hsictrl")

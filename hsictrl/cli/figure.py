@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import control as ct
-import matplotlib as mpl
 import numpy as np
 
 from hsictrl import plots
-from hsictrl.assessment import Assessment
+from hsictrl.assessment import Assessment, PeakTrial
 from hsictrl.cli.description import Description
-from hsictrl.prediction import Prediction, predict, tune
+from hsictrl.prediction import Prediction
 from hsictrl.resonance import effective, frf
 from hsictrl.study import trial_rng
 
@@ -20,21 +19,13 @@ BAND, LINES = (0.5, 1.5), 2001   # of the empty bridge's frequency
 
 def draw(path: Path, found: Assessment, case: Description) -> None:
     """Draw one assessment, with the frequency responses and histories of its first trial, into a file."""
-    mpl.use("Agg")
-    first = [_first_trial(model, found, case) for model in ("MF", "PMC")]
+    trials = [PeakTrial(model=model, bridge=found.bridge, flow=found.flow, force=case.force) for model in ("MF", "PMC")]
+    first = [trial.prediction(trial_rng(case.seed, 0)) for trial in trials]
     plot = plots.assessment_figure(
         frfs=[_frf(one) for one in first], effective=[effective(one.system) for one in first],
         responses=[one.response for one in first], ensembles=[found.without, found.within],
         title=f"{found.flow} on {str(case.bridge).splitlines()[0]}; (a), (b): trial 0 of seed {case.seed}")
-    plot.figure.savefig(path)
-
-
-def _first_trial(model: str, found: Assessment, case: Description) -> Prediction:
-    """What the trial of `hsictrl.assessment.PeakTrial` predicts, with its history."""
-    traffic = found.flow.sample(found.bridge, rng=trial_rng(case.seed, 0), force=case.force)
-    if found.flow.step_frequency is None:
-        traffic = tune(model, found.bridge, traffic)
-    return predict(model, found.bridge, traffic)
+    plots.save(plot, path)
 
 
 def _frf(prediction: Prediction) -> ct.FrequencyResponseData:

@@ -21,9 +21,9 @@ def checked_folder(folder: Path) -> Path:
 
 def checked_figure(path: Path) -> Path:
     """Return the path if a figure can be written there."""
-    from matplotlib.backend_bases import FigureCanvasBase
+    from hsictrl.plots import file_endings  # only now: no other command needs it
 
-    endings = sorted(FigureCanvasBase.get_supported_filetypes())
+    endings = file_endings()
     if path.suffix.lstrip(".") not in endings or path.is_dir():
         raise ValueError(f"a figure must be a file that ends in one of .{', .'.join(endings)}, got {path}; rename it")
     checked_folder(path.parent)

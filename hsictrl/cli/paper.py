@@ -16,7 +16,7 @@ from hsictrl.cli import options
 from hsictrl.cli.endings import failing, refusing
 from hsictrl.cli.files import checked_folder, whole_file
 from hsictrl.cli.outcome import print_json, print_table
-from hsictrl.cli.tables import Column, Row, significant, table
+from hsictrl.cli.tables import Column, Row, table
 from hsictrl.cli.workers import checked_processes, workers
 
 if TYPE_CHECKING:
@@ -55,11 +55,10 @@ def _write(report: Report, folder: Path) -> None:
     """Write a figure and its numbers, if there is a figure."""
     if report.draw is None:
         return
-    import matplotlib as mpl
+    from hsictrl.plots import save
 
-    mpl.use("Agg")
     with whole_file(folder / f"{report.name}.png") as draft:
-        report.draw().figure.savefig(draft)
+        save(report.draw(), draft)
     with whole_file(folder / f"{report.name}.json") as draft:
         draft.write_text(json.dumps(report.rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
@@ -75,4 +74,4 @@ def _justify(value: Any) -> JustifyMethod:
 
 def _cell(key: str, row: Row) -> str:
     value = row[key]
-    return significant(value, 4) if isinstance(value, float) else "–" if value is None else str(value)
+    return f"{value:.4g}" if isinstance(value, float) else "–" if value is None else str(value)

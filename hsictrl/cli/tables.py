@@ -58,7 +58,7 @@ def table(columns: Sequence[Column], rows: Sequence[Row]) -> Table:
     return drawn
 
 
-FLOW = Column("d", "[1/m²]", lambda row: f"{row['density_per_m2']:g}\nn={row['persons']}")
+FLOW = Column("d", "[1/m²]", lambda row: f"{row['density_per_m2']:.3g}\nn={row['persons']}")
 
 
 def case_notes(case: Description) -> list[str]:

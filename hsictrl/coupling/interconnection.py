@@ -118,10 +118,11 @@ def _closed(joined: ct.InterconnectedSystem) -> tuple[Array, Array, Array, Array
 def _refuse_ill_posed(loop: Array, joined: ct.InterconnectedSystem) -> None:
     if not len(loop):
         return
-    _, sizes, directions = np.linalg.svd(loop)
+    before, sizes, after = np.linalg.svd(loop)
     if sizes[-1] > len(loop) * np.finfo(float).eps * sizes[0]:
         return
     names = [f"{block.name}.{label}" for block in joined.syslist for label in block.input_labels]
-    caught = [name for name, share in zip(names, directions[-1], strict=True) if abs(share) > 1e-6]
+    shares = np.abs(before[:, -1] * after[-1])       # upstream and downstream of the loop, one of them is zero
+    caught = [name for name, share in zip(names, shares, strict=True) if share > 1e-6 * shares.max()]
     raise ValueError(f"an algebraic loop must have a solution, got none through {', '.join(caught)}; "
                      "break it with dynamics, or change a gain on it")

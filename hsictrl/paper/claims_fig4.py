@@ -6,12 +6,14 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hsictrl._checks import Array
 from hsictrl.paper.fig4 import DAMPINGS, FREQUENCIES, MASS_RATIOS, column
 from hsictrl.paper.reports import Finding, Rows
 
 F_B = np.array(FREQUENCIES)
+Mask = NDArray[np.bool_]
 
 
 def findings(rows: Rows) -> dict[str, Callable[[], Finding]]:
@@ -124,7 +126,7 @@ def _percent(values: Array) -> str:
     return f"{100 * values.min():.2f}–{100 * values.max():.2f} %"
 
 
-def _where(wrong: Array, frequencies: Array, what: str) -> str:
+def _where(wrong: Mask, frequencies: Mask, what: str) -> str:
     """Say in which cells a bound is not kept."""
     mass, _, index = np.nonzero(wrong)
     if not len(mass):

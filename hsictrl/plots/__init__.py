@@ -9,10 +9,11 @@ in pyplot: close them with ``matplotlib.pyplot.close(plot.figure)``.
 from hsictrl.plots.composed import assessment_figure
 from hsictrl.plots.convergence import convergence_plot
 from hsictrl.plots.effective_map import effective_map_plot, effective_panels
+from hsictrl.plots.files import file_endings, save
 from hsictrl.plots.frequency import frf_plot, normalised_frf_plot
 from hsictrl.plots.history import response_plot
 
 __all__ = [
-    "assessment_figure", "convergence_plot", "effective_map_plot", "effective_panels", "frf_plot",
-    "normalised_frf_plot", "response_plot",
+    "assessment_figure", "convergence_plot", "effective_map_plot", "effective_panels", "file_endings", "frf_plot",
+    "normalised_frf_plot", "response_plot", "save",
 ]

@@ -7,7 +7,6 @@ from typing import Any, final
 
 import control as ct
 import numpy as np
-from scipy.fft import next_fast_len
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -17,11 +16,11 @@ from hsictrl.crowd import Traffic, resonant_step_frequency
 from hsictrl.crowd.flow import settling_time
 from hsictrl.prediction.forces import Lines, modal_force
 from hsictrl.prediction.grid import Grid, evenly_spaced
+from hsictrl.prediction.spectral import accelerations
 from hsictrl.resonance import EffectiveProperties, effective
 
 MODELS = ("MF", "PMC")
 Resonances = list[EffectiveProperties]
-NEPERS = 18.0     # decay of a record's end before it wraps around to its beginning: to 2e-8
 
 
 @final
@@ -152,7 +151,7 @@ def _predicted(
     traffic = _relevant(traffic, bridge, decay, window, warm_up)
     lines = traffic.walkers.lines()
     grid = _grid(window, None if timepts is None else evenly_spaced(timepts), traffic, bridge, lines)
-    response = _response(system, traffic, lines, grid, decay)
+    response = accelerations(system, modal_force(bridge, traffic.walkers, lines, grid), grid, decay)
     return Prediction(model=system.name, system=system, remarks=traffic.remarks, response=ct.TimeResponseData(
         grid.times, response, output_labels=system.output_labels, issiso=len(response) == 1,
         plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration"))
@@ -238,28 +237,6 @@ def _grid(
                max(mode.frequency for mode in bridge.modes))
     start = float(np.min(traffic.walkers.arrival, initial=window[0]))
     return Grid.over(window, start, *highest) if times is None else Grid.at(times, start, *highest)
-
-
-def _response(system: OccupiedBridge, traffic: Traffic, lines: Lines, grid: Grid, decay: float) -> Array:
-    """Accelerations at the times of the grid, shape (p, m) [m/s²]."""
-    n, growth = _period(grid, decay)
-    fading = np.exp(-growth * grid.step * np.arange(grid.count))
-    spectrum = np.fft.rfft(modal_force(system.bridge, traffic.walkers, lines, grid) * fading, n)
-    s = np.asarray(growth + 2j * np.pi * np.fft.rfftfreq(n, grid.step), dtype=np.complex128)
-    return grid.read(system.respond(s, spectrum), growth)
-
-
-def _period(grid: Grid, decay: float) -> tuple[int, float]:
-    """Samples in a period, and rate of an exponential, such that the end of a response dies before it comes round.
-
-    The vibration's own decay does that, if the period is long enough. Where it would have to be longer than
-    four records, the rest is done by damping all signals with an exponential and taking it out at the end. That
-    multiplies the error of sampled kinks by at most exp(NEPERS/4), which is why it is not done alone.
-    """
-    record = grid.count * grid.step
-    pad = min(NEPERS / decay, 3 * record) if decay > 0 else 3 * record
-    n = 2 * next_fast_len(int(np.ceil((record + pad) / grid.step / 2)), real=True)
-    return n, max(0.0, NEPERS - decay * pad) / (n * grid.step)
 
 
 def _peak(signal: Array) -> float:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from hsictrl._checks import Array, instance, numbers, whole
 from hsictrl.study.ensembles import Ensemble
@@ -162,7 +162,6 @@ def _check_study(trial: Trial, rule: StopRule, seed: int, executor: Executor | N
 
 def _progress() -> Progress:
     console = Console(stderr=True)
-    rate = TaskProgressColumn(show_speed=True)
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}"), rate
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}"), TimeElapsedColumn()
     # not console.is_terminal, which FORCE_COLOR makes true in the logs of CI
     return Progress(*columns, console=console, transient=True, disable=not console.file.isatty())

@@ -1,0 +1,357 @@
+"""Truth: the digits of the Python functions that the command calls, by another road than its printing."""
+
+import csv
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import control as ct
+import pytest
+from matplotlib.figure import Figure
+from typer.testing import CliRunner
+
+import hsictrl as hsi
+from hsictrl import assessment, paper
+from hsictrl.cli import app, files
+from hsictrl.cli.workers import workers
+
+QUICK = ["--density", "0.2", "--tolerance", "0.5"]
+YOUNG = "seed = 3\n[traffic]\npersons = [15, 30]\n[force]\nmodel = 'young'\n"
+
+
+def run(*words, code=0):
+    result = CliRunner().invoke(app, list(map(str, words)), catch_exceptions=False)
+    assert result.exit_code == code, result.stderr
+    return result
+
+
+def process(*words):
+    return subprocess.run([sys.executable, "-m", "hsictrl", *map(str, words)], capture_output=True, text=True,
+                          encoding="utf-8", check=False)
+
+
+@pytest.fixture(scope="module")
+def young(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cli") / "young.toml"
+    path.write_text(YOUNG)
+    return path
+
+
+@pytest.fixture(scope="module")
+def found():
+    """What a Python user gets for YOUNG at a tolerance of 0.5."""
+    rule = hsi.PercentileRule(tolerance=0.5)
+    return [hsi.assess(hsi.reference_bridge(), hsi.CrowdFlow(persons=n), force=hsi.YoungForce(), rule=rule, seed=3)
+            for n in (15, 30)]
+
+
+@pytest.fixture
+def no_work(monkeypatch):
+    """Any trial is a failure of the test."""
+    def refuse(*args, **kwargs):
+        raise AssertionError("the long work began")
+    for module, name in ((assessment, "assess"), (assessment, "study_effective"), (paper, "compute")):
+        monkeypatch.setattr(module, name, refuse)
+
+
+@pytest.fixture
+def assessed(monkeypatch, found):
+    """The command at once: what it would compute is known."""
+    answers = iter(found)
+    monkeypatch.setattr(assessment, "assess", lambda *args, **kwargs: next(answers))
+
+
+# assess
+
+def test_json_has_the_digits_of_assess(young, found):
+    document = json.loads(run("assess", young, "--tolerance", "0.5", "--json").stdout)
+    assert document["rows"] == [one.to_dict() for one in found]
+    assert document["bridge"] == {"length_m": 50.0, "width_m": 3.0, "mass_kg": 50e3, "modes": [
+        {"frequency_hz": 2.0, "damping": 0.005, "modal_mass_kg": 25e3}]}
+    assert {"percentile": 95.0, "tolerance": 0.5, "confidence": 0.95, "seed": 3}.items() <= document["settings"].items()
+
+
+def test_module_runs_the_command_quietly_and_prints_its_table():
+    one = hsi.assess(hsi.reference_bridge(), hsi.CrowdFlow(density=0.2), rule=hsi.PercentileRule(tolerance=0.5))
+    done = process("assess", *QUICK)
+    assert (done.returncode, done.stderr) == (0, "")
+    for value in (one.without.estimate, one.within.estimate, *one.within.interval, one.reduction):
+        assert f"{value:#.3g}" in done.stdout
+    assert "→".join(one.classes) in done.stdout
+    assert max(map(len, done.stdout.split("footbridge")[0].splitlines())) <= 80
+
+
+def test_processes_and_figure_leave_the_digits_alone(young, found, tmp_path):
+    done = process("assess", young, "--tolerance", "0.5", "--json", "--processes", "2", "--figure", tmp_path / "a.png")
+    assert (done.returncode, done.stderr) == (0, f"wrote {tmp_path / 'a.png'}\n")
+    assert json.loads(done.stdout)["rows"] == [one.to_dict() for one in found]
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+
+
+def test_options_reach_the_study(monkeypatch, found):
+    calls = []
+    monkeypatch.setattr(assessment, "assess", lambda *args, **kwargs: calls.append((args, kwargs)) or found[0])
+    run("assess", "--frequency", 3.25, "--damping", 0.01, "--modal-mass", 40e3, "--density", 0.3, "--density", 1.0,
+        "--percentile", 90, "--tolerance", 0.2, "--seed", 8)
+    assert [flow for (_, flow), _ in calls] == [hsi.CrowdFlow(density=0.3), hsi.CrowdFlow(density=1.0)]
+    assert str(calls[0][0][0]) == str(hsi.reference_bridge(frequency=3.25, damping=0.01, modal_mass=40e3))
+    assert calls[0][1] == {"force": hsi.ZivanovicForce(), "seed": 8, "executor": None,
+                           "rule": hsi.PercentileRule(percentile=90, tolerance=0.2)}
+
+
+def test_without_options_it_is_section_4_2_at_5_percent(monkeypatch, found):
+    calls = []
+    monkeypatch.setattr(assessment, "assess", lambda *args, **kwargs: calls.append((args, kwargs)) or found[0])
+    run("assess")
+    assert [flow.density for (_, flow), _ in calls] == [0.2, 0.5, 0.8, 1.0, 1.5]
+    assert str(calls[0][0][0]) == str(hsi.reference_bridge(frequency=2.0, damping=0.005, modal_mass=25e3))
+    assert (calls[0][1]["rule"], calls[0][1]["seed"]) == (hsi.PercentileRule(), 1)
+
+
+@pytest.mark.usefixtures("assessed")
+def test_csv_keeps_every_digit(young, found):
+    rows = list(csv.DictReader(io.StringIO(run("assess", young, "--csv").stdout)))
+    for row, one in zip(rows, found, strict=True):
+        numbers = {key: value for key, value in one.to_dict().items() if isinstance(value, int | float)}
+        assert {key: type(value)(float(row[key]) if row[key] not in ("True", "False") else row[key] == "True")
+                for key, value in numbers.items()} == numbers
+        assert row["class_pmc"] == one.classes[1]
+
+
+@pytest.mark.usefixtures("assessed")
+def test_table_says_what_its_columns_are(young):
+    printed = " ".join(run("assess", young, "--percentile", 95).stdout.split())
+    for words in ("a95 MF", "a95 PMC", "R_HSI", "HiVoSS", "n=15", "n=30", "YoungForce(values='mean')", "Seed: 3",
+                  "2.000 Hz, 0.50 %, 25000 kg", "95 % interval", "±5 %", "without interaction", "eq. 18"):
+        assert words in printed
+
+
+def test_what_has_not_settled_is_said_below_the_table_and_in_json(monkeypatch, found):
+    one = found[0]
+    nowhere = hsi.Ensemble(
+        samples=one.within.samples.copy(), estimate=one.within.estimate, interval=(float("nan"), float("nan")),
+        converged=False, reason="too few", seed=1, rule=hsi.PercentileRule())
+    unsettled = hsi.Assessment(bridge=one.bridge, flow=one.flow, effective=one.effective, without=one.without,
+                               within=nowhere, guide=one.guide, remarks=("PMC: too few",))
+    monkeypatch.setattr(assessment, "assess", lambda *args, **kwargs: unsettled)
+    assert "Remark on 15 persons: PMC: too few." in run("assess", *QUICK).stdout
+    row = json.loads(run("assess", *QUICK, "--json").stdout)["rows"][0]
+    assert (row["a_pmc_low_m_per_s2"], row["a_pmc_converged"], row["remarks"]) == (None, False, "PMC: too few")
+    assert ",False," in run("assess", *QUICK, "--csv").stdout
+
+
+@pytest.mark.usefixtures("assessed")
+def test_figure_is_of_the_flow_with_the_largest_acceleration(monkeypatch, young, found, tmp_path):
+    drawn = []
+    monkeypatch.setattr("hsictrl.cli.figure.draw", lambda path, one, case: drawn.append(one) or path.touch())
+    run("assess", young, "--figure", tmp_path / "a.pdf")
+    assert drawn == [max(found, key=lambda one: one.within.estimate)]
+
+
+@pytest.mark.usefixtures("assessed")
+def test_figure_shows_the_trial_that_it_names(monkeypatch, young, found, tmp_path):
+    given = {}
+    monkeypatch.setattr("hsictrl.plots.assessment_figure",
+                        lambda **words: given.update(words) or SimpleNamespace(figure=Figure()))
+    run("assess", young, "--figure", tmp_path / "a.png")
+    largest = max(found, key=lambda one: one.within.estimate)
+    assert "trial 0 of seed 3" in given["title"]
+    assert str(largest.flow) in given["title"]
+    for response, ensemble in zip(given["responses"], given["ensembles"], strict=True):
+        assert abs(response.outputs).max() == pytest.approx(ensemble.samples[0], rel=0.01)   # peak lies between samples
+    for response, properties in zip(given["frfs"], given["effective"], strict=True):
+        assert abs(response.frdata).max() == pytest.approx(properties.peak, rel=0.02)
+
+
+# effective
+
+def test_effective_has_the_digits_of_study_effective(young):
+    document = json.loads(run("effective", young, "--json", "--tolerance", "0.1").stdout)
+    for row, n in zip(document["rows"], (15, 30), strict=True):
+        one = hsi.study_effective(hsi.reference_bridge(), hsi.CrowdFlow(persons=n), seed=3,
+                                  rule=assessment.effective_rule(0.1))
+        assert (row["persons"], row["trials"], row["converged"]) == (n, one.n_trials, True)
+        assert [row["f_eff_mean_hz"], row["f_eff_p5_hz"], row["f_eff_p95_hz"]] == one.estimate[0].tolist()
+        assert [row["xi_eff_mean_low"], row["xi_eff_p5_low"], row["xi_eff_p95_low"]] == one.interval[0][1].tolist()
+        assert row["xi_eff_p95_high"] == one.interval[1][1, 2]
+
+
+def test_effective_prints_table_and_csv(young):
+    printed = run("effective", young, "--tolerance", "0.2").stdout
+    row = next(csv.DictReader(io.StringIO(run("effective", young, "--tolerance", "0.2", "--csv").stdout)))
+    assert f"{float(row['f_eff_mean_hz']):#.4g}" in printed
+    assert f"{100 * float(row['xi_eff_p95']):#.3g}" in printed
+    assert f"({row['trials']})" in printed
+
+
+def test_effective_says_what_has_not_settled(monkeypatch, young):
+    one = hsi.study_effective(hsi.reference_bridge(), hsi.CrowdFlow(persons=15))
+    unsettled = hsi.Ensemble(samples=one.samples, estimate=one.estimate, interval=one.interval, converged=False,
+                             reason="too few", seed=1, rule=one.rule)
+    monkeypatch.setattr(assessment, "study_effective", lambda *args, **kwargs: unsettled)
+    assert "Remark on 30 persons: too few." in run("effective", young).stdout
+    assert json.loads(run("effective", young, "--json").stdout)["rows"][0]["remarks"] == "too few"
+
+
+# paper
+
+@pytest.fixture
+def stand_in(monkeypatch):
+    """A figure and a table in place of the real ones."""
+    rows = [{"case": "a", "f_hz": 1.23456, "n": 3, "more": 1.0}, {"case": "b", "f_hz": None, "n": 4, "more": 2.0}]
+
+    def compute(name, recompute=False, executor=None):
+        draw = None if name == "claims" else lambda: ct.ControlPlot([[]], [[]], Figure())
+        return paper.Report(name=name, rows=rows, columns=["case", "f_hz", "n"], draw=draw,
+                            caption=f"recompute {recompute}, executor {executor}")
+    monkeypatch.setattr(paper, "compute", compute)
+    monkeypatch.setattr(paper, "names", lambda: ("fig3", "claims"))
+    return rows
+
+
+def test_paper_writes_the_figure_and_its_numbers(stand_in, tmp_path):
+    result = run("paper", "fig3", "--output", tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fig3.json", "fig3.png"]
+    assert json.loads((tmp_path / "fig3.json").read_text()) == stand_in
+    assert result.stderr == f"wrote {tmp_path / 'fig3.png'}\nwrote {tmp_path / 'fig3.json'}\n"
+    assert re.search(r"a +1\.235 +3\n", result.stdout)
+    assert re.search(r"b +– +4\n", result.stdout)
+    assert "recompute False, executor None" in result.stdout
+    assert "more" not in result.stdout
+
+
+@pytest.mark.usefixtures("stand_in")
+def test_paper_writes_into_the_current_folder_unless_told(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    run("paper", "fig3")
+    assert (tmp_path / "fig3.png").exists()
+
+
+def test_paper_claims_prints_and_writes_nothing(stand_in, tmp_path):
+    result = run("paper", "claims", "--json", "--output", tmp_path)
+    assert (json.loads(result.stdout), result.stderr, list(tmp_path.iterdir())) == (stand_in, "", [])
+
+
+@pytest.mark.usefixtures("stand_in")
+def test_paper_recomputes_in_processes():
+    assert re.search(r"recompute True, executor <concurrent.futures.process.ProcessPoolExecutor",
+                     run("paper", "claims", "--recompute", "--processes", 2).stdout)
+
+
+def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkeypatch):
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
+    with workers(2) as executor:
+        assert executor.submit(os.getenv, "OPENBLAS_NUM_THREADS").result() == "1"
+        assert executor.submit(signal.getsignal, signal.SIGINT).result() == signal.SIG_IGN
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "2"
+
+
+# refusals
+
+@pytest.mark.usefixtures("no_work")
+@pytest.mark.parametrize(("words", "says"), [
+    ("assess --damping 5", "damping must lie in [0, 1), got 5; give a fraction, not percent"),
+    ("assess --damping -0.005", "damping must lie in [0, 1), got -0.005; give a fraction, not percent"),
+    ("assess --damping nan", "damping must lie in [0, 1), got nan; give a fraction, not percent"),
+    ("assess --damping 0", "damping must lie in (0, 1), got 0; give a fraction, not percent"),
+    ("assess --frequency -2", "frequency must be above 0, got -2; give Hz"),
+    ("assess --frequency inf", "frequency must be above 0, got inf; give Hz"),
+    ("assess --modal-mass 0", "modal_mass must be above 0, got 0; give kg"),
+    ("assess --density 0", "density must lie in (0, 5.4), got 0; give persons per m² above zero and below the jam"),
+    ("assess --density 5.4", "density must lie in (0, 5.4), got 5.4"),
+    ("assess --density 0.2 --density nan", "density must lie in (0, 5.4), got nan"),
+    ("assess --density 2", "density must lie in (0, 1.5], got 2; beyond 1.5 persons/m² walking is obstructed"),
+    ("assess --density 0.003", "density must put at least one person on the deck of 150 m², got 0.003 persons/m²;"),
+    ("assess --percentile 100", "percentile must lie in (0, 100), got 100; give percent, such as 95"),
+    ("assess --tolerance 5", "tolerance must lie in (0, 1), got 5; give a fraction, not percent"),
+    ("assess --seed -1", "seed must be at least 0, got -1; give any other whole number"),
+    ("assess --processes 0", "processes must be at least 1, got 0; give 1 to run in place"),
+    ("assess --figure TMP/no/a.png", "the output folder must exist, got TMP/no; make it first"),
+    ("assess --figure TMP", "a figure must be a file that ends in one of .avif"),
+    ("assess --figure TMP/a.doc", "got TMP/a.doc; rename it"),
+    ("assess --json --csv", "the output must have one form, got --json and --csv; leave one of them out"),
+    ("assess TMP/no.toml", "TMP/no.toml: the description must be a file that can be read, got No such file"),
+    ("assess TMP/bad.toml", "TMP/bad.toml, line 2, [bridge] damping: damping must lie in [0, 1), got 5; give a"),
+    ("assess TMP/good.toml --frequency 3",
+     "either by a file or by options, got TMP/good.toml and --frequency; write it into [bridge] of the file"),
+    ("effective TMP/bad.toml", "TMP/bad.toml, line 2, [bridge] damping: damping must lie in [0, 1), got 5; give a"),
+    ("effective --tolerance 0", "tolerance must lie in (0, 1), got 0; give a fraction, not percent"),
+    ("effective --json --csv", "the output must have one form"),
+    ("effective --processes -2", "processes must be at least 1, got -2"),
+    ("paper fig99", "name must be one of 'fig3', 'fig4', 'claims', got 'fig99'; choose one of these"),
+    ("paper fig3 --output TMP/no", "the output folder must exist, got TMP/no; make it first"),
+    ("paper fig3 --processes 0", "processes must be at least 1, got 0"),
+])
+def test_refusals(tmp_path, words, says):
+    (tmp_path / "bad.toml").write_text("[bridge]\ndamping = 5\nkind = 'reference'")
+    (tmp_path / "good.toml").write_text("")
+    before = sorted(tmp_path.iterdir())
+    result = run(*words.replace("TMP", str(tmp_path)).split(), code=2)
+    assert result.stderr.startswith("Error: ")
+    assert says.replace("TMP", str(tmp_path)) in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert (result.stdout, sorted(tmp_path.iterdir())) == ("", before)
+
+
+@pytest.mark.parametrize("words", ["assess --seed x", "assess --nonsense", "simulata", "paper"])
+def test_wrong_words_are_refused_with_exit_code_2(words):
+    result = run(*words.split(), code=2)
+    assert "Error: " in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_refusal_of_the_real_command_holds_no_traceback():
+    done = process("assess", "--damping", "5")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "Error: damping must lie in [0, 1), got 5; give a fraction, not percent\n"
+
+
+# endings
+
+def test_failed_trial_ends_with_exit_code_1(monkeypatch):
+    def fail(*args, **kwargs):
+        raise RuntimeError("trial 3 of seed 1 failed: ValueError: the deck is gone; rerun it alone")
+    monkeypatch.setattr(assessment, "assess", fail)
+    result = run("assess", code=1)
+    assert result.stderr == "Error: trial 3 of seed 1 failed: ValueError: the deck is gone; rerun it alone\n"
+
+
+def test_our_own_mistakes_are_not_taken_for_bad_input(monkeypatch):
+    def fail(*args, **kwargs):
+        raise ValueError("a mistake of ours")
+    monkeypatch.setattr(assessment, "assess", fail)
+    with pytest.raises(ValueError, match="a mistake of ours"):
+        run("assess")
+
+
+def test_interrupt_is_quiet(monkeypatch):
+    def interrupt(*args, **kwargs):
+        raise KeyboardInterrupt
+    monkeypatch.setattr(assessment, "assess", interrupt)
+    result = run("assess", code=130)
+    assert (result.stdout, result.stderr) == ("", "")
+
+
+def test_file_is_written_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text("old")
+
+    def write_half():
+        with files.whole_file(path) as draft:
+            draft.write_text("ne")
+            assert path.read_text() == "old"
+            raise OSError("disk full")
+    with pytest.raises(OSError, match="disk full"):
+        write_half()
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.json", "old")]
+
+
+@pytest.mark.parametrize("words", [["--help"], ["assess", "--help"], ["effective", "--help"], ["paper", "--help"]])
+def test_help(words):
+    assert "Usage: " in run(*words).stdout
