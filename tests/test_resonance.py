@@ -112,7 +112,7 @@ def test_peak_is_that_of_a_plain_system(n_modes, n, mode):
     assert found.peak == pytest.approx(-lowest.fun, rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_two_peaks_compete_where_a_mode_shifts(seed):
     """225 walkers at f_B 3.7 Hz (section 3.3): all local maxima of the plain system, highest first."""
     bridge, (people, x) = beam(frequency=3.7), walkers(225, seed)
@@ -141,6 +141,17 @@ def test_no_higher_peak_lies_anywhere(seed, n, frequency, n_modes):
 def test_a_band_holds_a_peak_however_near_to_its_end(band):
     """f_eff = 2/√(1−2ξ²) = 2.00005 Hz lies inside every one of these."""
     assert hsi.effective(beam(), band=band).frequency == pytest.approx(2 / np.sqrt(1 - 2 * 0.005**2), rel=1e-10)
+
+
+@pytest.mark.parametrize("n_modes", [1, 2])
+def test_every_local_maximum_is_listed(n_modes):
+    """Light absorbers split a mode into many narrow peaks: all those of the plain system, highest first."""
+    bridge, x = beam(n_modes), [22.0, 24.0, 26.0, 28.0, 30.0]
+    people = hsi.Crowd(mass=[100.0, 150.0, 200.0, 150.0, 100.0], frequency=[1.85, 1.95, 2.0, 2.05, 2.2], damping=0.004)
+    found = hsi.effective(hsi.couple(bridge, people, x))
+    expected = peaks(on_coordinate(bridge, people, x))
+    assert len(expected) >= 6
+    assert [(found.frequency, found.peak), *found.competing] == [pytest.approx(peak, rel=1e-8) for peak in expected]
 
 
 def test_a_band_chooses_among_competing_peaks():
@@ -190,7 +201,8 @@ def modal_residue(plain):
 @given(seed=st.integers(0, 10**6), n=st.integers(0, 20), frequency=st.floats(1, 6), n_modes=st.integers(1, 3))
 def test_pole_is_the_dominant_one_of_the_plain_system(seed, n, frequency, n_modes):
     rng = np.random.default_rng(seed)
-    people = hsi.Crowd(mass=np.full(n, 70.0), frequency=rng.uniform(1, 8, n), damping=rng.uniform(0.05, 0.5, n))
+    people = hsi.Crowd(mass=rng.uniform(50, 900, n), frequency=frequency * rng.uniform(0.6, 1.6, n),
+                       damping=rng.uniform(0.01, 0.5, n))
     bridge, x = beam(n_modes, frequency), rng.uniform(0, 50, n)
     for mode in range(n_modes):
         found = hsi.effective(hsi.couple(bridge, people, x), mode=mode, method="pole")
@@ -219,7 +231,7 @@ def test_an_undamped_body_that_no_mode_moves_has_no_say():
     assert tuple(found) == pytest.approx((2.0, 0.005), rel=1e-9)
 
 
-@pytest.mark.parametrize(("n", "frequency"), [(0, 2.0), (10, 2.0), (75, 3.25), (225, 2.5)])
+@pytest.mark.parametrize(("n", "frequency"), [(0, 2.0), (10, 2.0), (60, 3.25), (100, 2.5)])
 def test_half_power_is_where_the_plain_response_crosses(n, frequency):
     bridge, (people, x) = beam(frequency=frequency), walkers(n, seed=3)
     plain = on_coordinate(bridge, people, x)

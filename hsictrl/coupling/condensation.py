@@ -89,8 +89,14 @@ class CondensedCrowd:
 
 def _weighted_receptance(weights: Array, people: Crowd, s: Complex) -> Complex:
     """``weights @ 1/(s² + 2ξω s + ω²)``, in real arithmetic, which numpy runs several times faster."""
-    damping, omega = 2 * people.damping * people.omega, people.omega
-    real = np.multiply.outer(damping, s.real) + ((s**2).real + (omega**2)[:, None])
-    imaginary = np.multiply.outer(damping, s.imag) + (s**2).imag
-    size = 1 / (real**2 + imaginary**2)
-    return np.asarray(weights @ (real * size) - 1j * (weights @ (imaginary * size)))
+    damping, square = 2 * people.damping * people.omega, s**2
+    real = np.add.outer(people.omega**2, square.real)
+    imaginary = np.multiply.outer(damping, s.imag)
+    if np.any(s.real):    # on the imaginary axis, where most questions are asked, these are zero
+        real += np.multiply.outer(damping, s.real)
+        imaginary += square.imag
+    size = real**2
+    size += imaginary**2
+    real /= size
+    imaginary /= size
+    return np.asarray(weights @ real - 1j * (weights @ imaginary))

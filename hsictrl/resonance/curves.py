@@ -68,8 +68,7 @@ class ModalCurve(Curve):
         s = 1j * np.asarray(omega)
         with np.errstate(divide="ignore", invalid="ignore"):
             flexibility = np.linalg.inv(self.system.dynamic_stiffness(s))[:, self.index, self.index]
-        size = np.asarray(np.abs(s**2 * flexibility)) / self.modal_mass
-        return np.nan_to_num(size, nan=0.0)         # NaN at the frequency of an undamped body, which holds the deck
+        return np.asarray(np.abs(s**2 * flexibility)) / self.modal_mass
 
     def slope(self, omega: float) -> float:
         s = 1j * omega

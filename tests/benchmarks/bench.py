@@ -105,16 +105,17 @@ def effective() -> Row:
 def trial() -> list[Row]:
     """One PMC trial: 150 walkers with narrow-band forces who step on during one crossing time, and its response."""
     flow = hsi.CrowdFlow(density=1.0)
-    traffic = hsi.tune("PMC", BRIDGE, one_window(flow))
-    walkers = traffic.walkers.part(slice(0, flow.persons_on(BRIDGE)))
-    traffic = hsi.Traffic(walkers, window=traffic.window, target=traffic.target, standing=traffic.standing_on(BRIDGE))
+    drawn = hsi.tune("PMC", BRIDGE, flow.sample(BRIDGE, rng=np.random.default_rng(SEED)))
+    walkers, start = last(drawn.walkers, flow.persons_on(BRIDGE))
+    window = start, start + drawn.window[1]
+    traffic = hsi.Traffic(walkers, window=window, target=drawn.target, standing=drawn.standing_on(BRIDGE))
     prediction = hsi.predict("PMC", BRIDGE, traffic)
     system, lines = prediction.system, walkers.lines()
     found = hsi.effective(system)
     decay, highest = 2 * np.pi * found.frequency * found.damping, lines[0][1].highest_frequency
-    coarse = Grid.over(traffic.window, 0.0, highest, found.frequency)
+    coarse = Grid.over(window, start, highest, found.frequency)
     force = modal_force(BRIDGE, walkers, lines, coarse)
-    fine = Grid.at(prediction.response.time, 0.0, highest, found.frequency)
+    fine = Grid.at(prediction.response.time, start, highest, found.frequency)
     record = modal_force(BRIDGE, walkers, lines, fine)[0, :len(fine.times)] / BRIDGE.participation([25.0])[0, 0]
     ours = best(lambda: accelerations(system, force, coarse, decay), 20)
     theirs = best(lambda: ct.forced_response(system, fine.times, record), 3)
@@ -124,9 +125,10 @@ def trial() -> list[Row]:
             Row(f"PMC trial in all, {n} walkers, narrow-band force", whole, "-", None, "≤ 25 ms")]
 
 
-def one_window(flow: hsi.CrowdFlow) -> hsi.Traffic:
-    """Traffic of which those alone are kept who step on from the start of the observed window on."""
-    return flow.sample(BRIDGE, rng=np.random.default_rng(SEED)).since(0.0)
+def last(walkers: hsi.Walkers, n: int) -> tuple[hsi.Walkers, float]:
+    """The last n to arrive, and when the first of them does [s]."""
+    kept = walkers.part(slice(-n, None))
+    return kept, float(kept.arrival[0])
 
 
 def main() -> None:
