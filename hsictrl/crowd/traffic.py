@@ -181,10 +181,9 @@ class Traffic:
         """
         if self._standing is not None:
             return self._standing
-        x = self.walkers.position([np.mean(self.observed(bridge))])[:, 0]
-        present = (x >= 0) & (x <= bridge.length) & (np.abs(self.walkers.offset) <= bridge.width / 2)
-        places = np.column_stack([x, self.walkers.offset])[present]
-        return self.walkers.bodies.part(present), places
+        places = self.walkers.places(float(np.mean(self.observed(bridge))))
+        present = bridge.carries(places)
+        return self.walkers.bodies.part(present), places[present]
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
         return Traffic(walkers, window=self.window, target=target, standing=self._standing)
