@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Direction = Literal["vertical", "lateral"]
+DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
+PERCENT = "give a fraction, not percent"
 
 
 def number(
@@ -57,8 +60,14 @@ def instance(name: str, value: Any, kind: type | tuple[type, ...], remedy: str) 
     if not isinstance(value, kind):
         kinds = kind if isinstance(kind, tuple) else (kind,)
         names = " or ".join(k.__name__ for k in kinds)
-        raise TypeError(f"{name} must be a {names}, got {type(value).__name__}; {remedy}")
+        raise TypeError(f"{name} must be of type {names}, got {type(value).__name__}; {remedy}")
     return value
+
+
+def store(thing: Any, **values: Any) -> None:
+    """Set attributes of a frozen instance, while it is being made."""
+    for name, value in values.items():
+        object.__setattr__(thing, name, value)
 
 
 def _real(name: str, value: Any, remedy: str) -> Array:
@@ -106,9 +115,6 @@ def _rule(above: float | None, least: float | None, below: float | None, most: f
 def _short(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
-
-
-DIRECTIONS = ("vertical", "lateral")
 
 
 def directions(values: Any) -> NDArray[np.str_]:

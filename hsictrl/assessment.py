@@ -130,7 +130,7 @@ class Assessment:
         The stream of people.
     effective : Ensemble
         Effective frequency [Hz] and damping ratio [-] of the occupied bridge: means.
-    without, within : Ensemble
+    mf, pmc : Ensemble
         Peak acceleration without (MF) and with (PMC) human-structure interaction: a percentile [m/s²].
     guide : DesignResponse
         Design acceleration of HiVoSS for the same density [m/s²].
@@ -148,26 +148,26 @@ class Assessment:
     bridge: Footbridge
     flow: CrowdFlow
     effective: Ensemble
-    without: Ensemble
-    within: Ensemble
+    mf: Ensemble
+    pmc: Ensemble
     guide: DesignResponse
     remarks: tuple[str, ...] = ()
 
     @property
     def reduction(self) -> float:
         """Reduction factor R_HSI (eq. 18) [-]."""
-        return float(self.without.estimate / self.within.estimate)
+        return float(self.mf.estimate / self.pmc.estimate)
 
     @property
     def reduction_interval(self) -> tuple[float, float]:
         """Interval of R_HSI from the ends of both intervals; it covers at least as much as both do together [-]."""
-        (low, high), (least, most) = self.without.interval, self.within.interval
+        (low, high), (least, most) = self.mf.interval, self.pmc.interval
         return float(low / most), float(high / least)
 
     @property
     def classes(self) -> tuple[str, str]:
         """Comfort class without and with interaction."""
-        return comfort_class(float(self.without.estimate)), comfort_class(float(self.within.estimate))
+        return comfort_class(float(self.mf.estimate)), comfort_class(float(self.pmc.estimate))
 
     def to_dict(self) -> dict[str, Any]:
         """Export with the units in the keys.
@@ -184,14 +184,13 @@ class Assessment:
         >>> found.to_dict()["persons"]
         15
         """
-        frequency, damping = np.ravel(self.effective.estimate)
+        found, (low, high) = np.ravel(self.effective.estimate), map(np.ravel, self.effective.interval)
         return {
             "density_per_m2": self.flow.density_on(self.bridge), "persons": self.flow.persons_on(self.bridge),
-            "f_eff_hz": float(frequency), **_ends("f_eff", "hz", self.effective.interval, 0),
-            "xi_eff": float(damping), **_ends("xi_eff", "", self.effective.interval, 1),
-            "effective_trials": self.effective.n_trials,
-            **_ensemble("mf", self.without), **_ensemble("pmc", self.within),
-            "r_hsi": self.reduction, **_ends("r_hsi", "", self.reduction_interval, 0),
+            **_quantity("f_eff", "_hz", found[0], (low[0], high[0])),
+            **_quantity("xi_eff", "", found[1], (low[1], high[1])), "effective_trials": self.effective.n_trials,
+            **_peak("a_mf", self.mf), **_peak("a_pmc", self.pmc),
+            **_quantity("r_hsi", "", self.reduction, self.reduction_interval),
             "class_mf": self.classes[0], "class_pmc": self.classes[1],
             "hivoss_m_per_s2": self.guide.acceleration, "remarks": "; ".join(self.remarks)}
 
@@ -231,16 +230,16 @@ def assess(
     >>> found.classes[1]
     'CL3'
     """
-    _check_case(bridge, flow)
-    guide = guide_value(bridge, flow)    # first of all, since it refuses what no study should be run for
+    check_assessable(bridge, flow)
     check.instance("rule", rule, PercentileRule, "use PercentileRule(percentile=…, tolerance=…)")
     force = ZivanovicForce() if force is None else force
     peaks = {model: monte_carlo(
         PeakTrial(model=model, bridge=bridge, flow=flow, force=force), rule=rule, seed=seed, executor=executor,
         label=f"{flow}, {model}") for model in ("MF", "PMC")}
     found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor)
-    return Assessment(bridge=bridge, flow=flow, effective=found, without=peaks["MF"], within=peaks["PMC"],
-                      guide=guide, remarks=_remarks(bridge, flow, peaks | {"effective properties": found}))
+    return Assessment(bridge=bridge, flow=flow, effective=found, mf=peaks["MF"], pmc=peaks["PMC"],
+                      guide=guide_value(bridge, flow),
+                      remarks=_remarks(bridge, flow, peaks | {"effective properties": found}))
 
 
 def study_effective(
@@ -334,11 +333,45 @@ def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", m
         crowd_modal_mass=PERSON_MASS * density * bridge.area * resonant.shape.mean_square, guide=guide)
 
 
+def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
+    """Refuse what no study should be run for.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        The stream of people.
+
+    Raises
+    ------
+    ValueError
+        If nobody is on the deck, nothing damps the bridge, its first mode does not move vertically, or people are
+        too many to walk.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> check_assessable(reference_bridge(), CrowdFlow(density=1.5))
+    """
+    _check_case(bridge, flow)
+    if not flow.persons_on(bridge):
+        raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
+                         "give a higher one")
+    check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
+    if not bridge.moves_vertically(0):
+        raise ValueError("the first mode must move vertically, got a shape that does not at its antinode; "
+                         "describe the bridge with a vertical mode first")
+    guide_value(bridge, flow)
+
+
 def _remarks(bridge: Footbridge, flow: CrowdFlow, ensembles: dict[str, Ensemble]) -> tuple[str, ...]:
     unsettled = tuple(f"{name}: {one.reason}" for name, one in ensembles.items() if not one.converged)
     drawn = flow.sample(bridge, rng=np.random.default_rng(0))
+    silent = () if guide_value(bridge, flow).reduction else (f"{bridge.modes[0].frequency:g} Hz lies outside the range "
+                                                            "for which HiVoSS has a load",)
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
-    return (*dict.fromkeys(drawn.remarks + tuned), *unsettled)
+    return (*dict.fromkeys(drawn.remarks + tuned), *silent, *unsettled)
 
 
 def _check_case(bridge: Any, flow: Any) -> None:
@@ -346,13 +379,12 @@ def _check_case(bridge: Any, flow: Any) -> None:
     check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
 
 
-def _ends(name: str, unit: str, interval: Any, index: int) -> dict[str, float]:
-    ends = [np.ravel(end) for end in interval] if np.ndim(interval[0]) else [interval[:1], interval[1:]]
-    suffix = f"_{unit}" if unit else ""
-    return {f"{name}_{side}{suffix}": float(end[index]) for side, end in zip(("low", "high"), ends, strict=True)}
+def _quantity(name: str, unit: str, estimate: Any, interval: Any) -> dict[str, float]:
+    """An estimate and the ends of its interval, the unit last in each key."""
+    parts = {"": estimate, "_low": interval[0], "_high": interval[1]}
+    return {f"{name}{part}{unit}": float(value) for part, value in parts.items()}
 
 
-def _ensemble(name: str, ensemble: Ensemble) -> dict[str, Any]:
-    return {f"a_{name}_m_per_s2": float(ensemble.estimate), f"a_{name}_low_m_per_s2": float(ensemble.interval[0]),
-            f"a_{name}_high_m_per_s2": float(ensemble.interval[1]), f"a_{name}_trials": ensemble.n_trials,
-            f"a_{name}_converged": ensemble.converged}
+def _peak(name: str, ensemble: Ensemble) -> dict[str, Any]:
+    return {**_quantity(name, "_m_per_s2", ensemble.estimate, ensemble.interval),
+            f"{name}_trials": ensemble.n_trials, f"{name}_converged": ensemble.converged}

@@ -2,23 +2,23 @@
 
 Sources: Sétra (2006), Footbridges: assessment of vibrational behaviour; HiVoSS (2008), Design of footbridges:
 guideline; ISO 10137 (2007); EN 1990 A2.4.3.2. They were read through public manuals and implementations; a
-value without such a source is marked "unverified (from memory)".
+value that none of these gave is marked "not checked against the guide" or "the standard".
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 
-from hsictrl._checks import choice, number
+from hsictrl import _checks as check
 
 __all__ = [
     "DesignResponse", "comfort_class", "design_acceleration", "en1990_limit", "equivalent_pedestrians",
     "iso10137_limit", "load_reduction",
 ]
 
-_DIRECTIONS = ("vertical", "lateral")
 _GUIDES = ("hivoss", "setra")
 _VERTICAL_FORCE = 280.0
 _NEGLIGIBLE_MASS_RATIO = 0.05
@@ -46,19 +46,19 @@ def comfort_class(acceleration: float, direction: str = "vertical") -> str:
     Parameters
     ----------
     acceleration : float
-        Peak acceleration of the deck. [m/s²]
+        Peak acceleration of the deck [m/s²].
     direction : {"vertical", "lateral"}
-        Direction of the acceleration. [-]
+        Direction of the acceleration.
 
     Returns
     -------
     str
-        "CL1" (maximum comfort), "CL2", "CL3" or "CL4" (not acceptable). [-]
+        "CL1" (maximum comfort), "CL2", "CL3" or "CL4" (not acceptable).
 
     Notes
     -----
     Vertical: CL1 < 0.5 ≤ CL2 < 1.0 ≤ CL3 ≤ 2.5 < CL4. Lateral: CL1 < 0.1 ≤ CL2 < 0.3 ≤ CL3 ≤ 0.8 < CL4; its
-    bound of 0.3 is unverified (from memory). To which class a bound itself belongs is our reading.
+    bound of 0.3 is not checked against the guide. To which class a bound itself belongs is our reading.
 
     Source: HiVoSS (2008), comfort classes, and the ranges of Sétra (2006).
 
@@ -67,8 +67,8 @@ def comfort_class(acceleration: float, direction: str = "vertical") -> str:
     >>> comfort_class(0.49), comfort_class(0.5), comfort_class(2.5), comfort_class(2.51)
     ('CL1', 'CL2', 'CL3', 'CL4')
     """
-    a = number("acceleration", acceleration, least=0, remedy="give the peak of its absolute value in m/s²")
-    low, middle, high = _CLASS_BOUNDS[choice("direction", direction, _DIRECTIONS)]
+    a = check.number("acceleration", acceleration, least=0, remedy="give the peak of its absolute value in m/s²")
+    low, middle, high = _CLASS_BOUNDS[check.choice("direction", direction, check.DIRECTIONS)]
     return f"CL{1 + (a >= low) + (a >= middle) + (a > high)}"
 
 
@@ -78,14 +78,14 @@ def en1990_limit(direction: str = "vertical", *, crowd: str = "normal") -> float
     Parameters
     ----------
     direction : {"vertical", "lateral"}
-        Direction of the acceleration. [-]
+        Direction of the acceleration.
     crowd : {"normal", "exceptional"}
-        Normal use or exceptional crowd conditions. [-]
+        Normal use or exceptional crowd conditions.
 
     Returns
     -------
     float
-        Limit of the peak acceleration of any part of the deck. [m/s²]
+        Limit of the peak acceleration of any part of the deck [m/s²].
 
     Notes
     -----
@@ -99,28 +99,29 @@ def en1990_limit(direction: str = "vertical", *, crowd: str = "normal") -> float
     >>> en1990_limit(), en1990_limit("lateral"), en1990_limit("lateral", crowd="exceptional")
     (0.7, 0.2, 0.4)
     """
-    choice("direction", direction, _DIRECTIONS)
-    return _EN1990_LIMITS[direction, choice("crowd", crowd, ("normal", "exceptional"))]
+    check.choice("direction", direction, check.DIRECTIONS)
+    return _EN1990_LIMITS[direction, check.choice("crowd", crowd, ("normal", "exceptional"))]
 
 
 def iso10137_limit(frequency: float, multiplier: float = 60.0) -> float:
-    """Return the limit of the vertical rms acceleration by ISO 10137.
+    """Return the limit of the vertical RMS acceleration by ISO 10137.
 
     Parameters
     ----------
     frequency : float
-        Frequency of the vibration, from 1 to 8. [Hz]
+        Frequency of the vibration, from 1 to 8 [Hz].
     multiplier : float
-        Multiplier of the base curve: 60 for footbridges, 30 where people stand on them. [-]
+        Multiplier of the base curve: 60 for footbridges, 30 where people stand on them [-].
 
     Returns
     -------
     float
-        Limit of the rms acceleration. [m/s²]
+        Limit of the RMS acceleration [m/s²].
 
     Notes
     -----
-    Base curve: 0.010/√f from 1 to 4 Hz, 0.005 from 4 to 8 Hz. Both multipliers are unverified (from memory).
+    Base curve: 0.010/√f from 1 to 4 Hz, 0.005 from 4 to 8 Hz. Neither multiplier is checked against the
+    standard.
 
     Source: ISO 10137 (2007), base curve of vertical vibration.
 
@@ -129,8 +130,8 @@ def iso10137_limit(frequency: float, multiplier: float = 60.0) -> float:
     >>> iso10137_limit(1.0), iso10137_limit(4.0, multiplier=30)
     (0.6, 0.15)
     """
-    f = number("frequency", frequency, least=1, most=8, remedy="outside it, use the standard's own curve")
-    factor = number("multiplier", multiplier, above=0, remedy="60 is usual, 30 where people stand")
+    f = check.number("frequency", frequency, least=1, most=8, remedy="outside it, use the standard's own curve")
+    factor = check.number("multiplier", multiplier, above=0, remedy="60 is usual, 30 where people stand")
     return factor * 0.010 / min(f, 4.0) ** 0.5
 
 
@@ -140,16 +141,16 @@ def equivalent_pedestrians(density: float, *, area: float, damping: float) -> fl
     Parameters
     ----------
     density : float
-        Walkers per area of the deck, up to 1.5. [1/m²]
+        Walkers per area of the deck, up to 1.5 [1/m²].
     area : float
-        Area of the deck. [m²]
+        Area of the deck [m²].
     damping : float
-        Damping ratio of the mode; it matters below 1 person/m². [-]
+        Damping ratio of the mode; it matters below 1 person/m² [-].
 
     Returns
     -------
     float
-        Equivalent walkers per area. [1/m²]
+        Equivalent walkers per area [1/m²].
 
     Notes
     -----
@@ -163,9 +164,9 @@ def equivalent_pedestrians(density: float, *, area: float, damping: float) -> fl
     >>> round(equivalent_pedestrians(0.5, area=150.0, damping=0.015), 6)
     0.076368
     """
-    d = number("density", density, above=0, most=1.5, remedy="beyond 1.5 persons/m² walking is obstructed")
-    S = number("area", area, above=0, remedy="give the area of the deck in m²")
-    xi = number("damping", damping, above=0, below=1, remedy="give a fraction, not percent")
+    d = check.number("density", density, above=0, most=1.5, remedy="beyond 1.5 persons/m² walking is obstructed")
+    S = check.number("area", area, above=0, remedy="give the area of the deck in m²")
+    xi = check.number("damping", damping, above=0, below=1, remedy=check.PERCENT)
     return float(10.8 * np.sqrt(xi * d * S) / S if d < 1 else 1.85 * np.sqrt(d * S) / S)
 
 
@@ -177,18 +178,18 @@ def load_reduction(
     Parameters
     ----------
     frequency : float
-        Natural frequency of the mode. [Hz]
+        Natural frequency of the mode [Hz].
     guide : {"hivoss", "setra"}
-        The guide. [-]
+        The guide.
     harmonic : {1, 2}
-        Harmonic of the walking load; the second is vertical only. [-]
+        Harmonic of the walking load; the second is vertical only [-].
     direction : {"vertical", "lateral"}
-        Direction of the mode; lateral for HiVoSS only. [-]
+        Direction of the mode; lateral for HiVoSS only.
 
     Returns
     -------
     float
-        Reduction ψ of the load of the first harmonic (280 N vertical, 35 N lateral). [-]
+        Reduction ψ of the load of the first harmonic (280 N vertical, 35 N lateral) [-].
 
     Notes
     -----
@@ -202,11 +203,12 @@ def load_reduction(
     >>> load_reduction(1.9), load_reduction(1.9, harmonic=2), load_reduction(3.8, "setra", harmonic=2)
     (1.0, 0.0, 0.25)
     """
-    f = number("frequency", frequency, above=0, remedy="give the natural frequency in Hz")
+    f = check.number("frequency", frequency, above=0, remedy="give the natural frequency in Hz")
     corners, top = _trapezoid(guide, direction, harmonic)
     return float(np.interp(f, corners, (0.0, top, top, 0.0)))
 
 
+@final
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignResponse:
     """The vertical design acceleration and what it was computed from.
@@ -214,15 +216,15 @@ class DesignResponse:
     Parameters
     ----------
     acceleration : float
-        Peak acceleration where the mode shape is one. [m/s²]
+        Peak acceleration where the mode shape is one [m/s²].
     equivalent_pedestrians : float
-        Equivalent walkers per area n′. [1/m²]
+        Equivalent walkers per area n′ [1/m²].
     reduction : float
-        Load reduction ψ, of the governing harmonic. [-]
+        Load reduction ψ, of the governing harmonic [-].
     frequency : float
-        Frequency, with the crowd's mass where that counts. [Hz]
+        Frequency, with the crowd's mass where that counts [Hz].
     modal_mass : float
-        Modal mass, with the crowd's where that counts. [kg]
+        Modal mass, with the crowd's where that counts [kg].
 
     Examples
     --------
@@ -248,21 +250,21 @@ def design_acceleration(
     Parameters
     ----------
     frequency : float
-        Natural frequency of the empty footbridge. [Hz]
+        Natural frequency of the empty footbridge [Hz].
     damping : float
-        Damping ratio. [-]
+        Damping ratio [-].
     modal_mass : float
-        Modal mass of the empty footbridge. [kg]
+        Modal mass of the empty footbridge [kg].
     loaded_area : float
-        ∫∫|φ| dx dy over the deck, for the shape φ that goes with the modal mass. [m²]
+        ∫∫|φ| dx dy over the deck, for the shape φ that goes with the modal mass [m²].
     density : float
-        Walkers per area of the deck. [1/m²]
+        Walkers per area of the deck [1/m²].
     area : float
-        Area of the deck. [m²]
+        Area of the deck [m²].
     crowd_modal_mass : float
-        Modal mass of the walkers, 70 kg each: 70 d ∫∫φ² dx dy. [kg]
+        Modal mass of the walkers, 70 kg each: 70 d ∫∫φ² dx dy [kg].
     guide : {"hivoss", "setra"}
-        The guide whose load reduction applies. [-]
+        The guide whose load reduction applies.
 
     Returns
     -------
@@ -287,7 +289,7 @@ def design_acceleration(
     1.089
     """
     f, m = _occupied(frequency, modal_mass, crowd_modal_mass)
-    phi = number("loaded_area", loaded_area, above=0, remedy="integrate |shape| over the deck, in m²")
+    phi = check.number("loaded_area", loaded_area, above=0, remedy="integrate |shape| over the deck, in m²")
     n = equivalent_pedestrians(density, area=area, damping=damping)
     psi = max(load_reduction(f, guide, harmonic=harmonic) for harmonic in (1, 2))
     a = _VERTICAL_FORCE * psi * n * phi / (2 * damping * m)
@@ -295,18 +297,22 @@ def design_acceleration(
 
 
 def _trapezoid(guide: str, direction: str, harmonic: int) -> tuple[tuple[float, ...], float]:
-    key = choice("guide", guide, _GUIDES), choice("direction", direction, _DIRECTIONS), harmonic
-    if key not in _TRAPEZOIDS:
-        known = ", ".join(f"{h} of {g} {d}" for g, d, h in _TRAPEZOIDS)
-        asked = f"{harmonic} of {guide} {direction}"
-        raise ValueError(f"harmonic must be one of {known}, got {asked}; choose one of these")
-    return _TRAPEZOIDS[key]
+    check.choice("guide", guide, _GUIDES)
+    check.choice("direction", direction, check.DIRECTIONS)
+    known = [h for g, d, h in _TRAPEZOIDS if (g, d) == (guide, direction)]
+    if not known:
+        raise ValueError(f"direction must be one whose load {guide} gives, got {direction!r}; choose another guide")
+    if harmonic not in known:
+        only = " or ".join(map(str, known))
+        raise ValueError(f"harmonic must be {only} for the {direction} load of {guide}, got {harmonic!r}; "
+                         "give one that the guide has")
+    return _TRAPEZOIDS[guide, direction, harmonic]
 
 
 def _occupied(frequency: float, modal_mass: float, crowd_modal_mass: float) -> tuple[float, float]:
-    f = number("frequency", frequency, above=0, remedy="give the natural frequency in Hz")
-    m = number("modal_mass", modal_mass, above=0, remedy="give the modal mass of the empty footbridge in kg")
-    added = number("crowd_modal_mass", crowd_modal_mass, least=0, remedy="give 0 for an empty deck")
+    f = check.number("frequency", frequency, above=0, remedy="give the natural frequency in Hz")
+    m = check.number("modal_mass", modal_mass, above=0, remedy="give the modal mass of the empty footbridge in kg")
+    added = check.number("crowd_modal_mass", crowd_modal_mass, least=0, remedy="give 0 for an empty deck")
     if added <= _NEGLIGIBLE_MASS_RATIO * m:
         return f, m
     return f * (m / (m + added)) ** 0.5, m + added

@@ -80,7 +80,7 @@ def test_module_runs_the_command_quietly_and_prints_its_table():
     one = hsi.assess(hsi.reference_bridge(), hsi.CrowdFlow(density=0.2), rule=hsi.PercentileRule(tolerance=0.5))
     done = process("assess", *QUICK)
     assert (done.returncode, done.stderr) == (0, "")
-    for value in (one.without.estimate, one.within.estimate, *one.within.interval, one.reduction):
+    for value in (one.mf.estimate, one.pmc.estimate, *one.pmc.interval, one.reduction):
         assert f"{value:#.3g}" in done.stdout
     assert "→".join(one.classes) in done.stdout
     assert max(map(len, done.stdout.split("footbridge")[0].splitlines())) <= 80
@@ -135,10 +135,10 @@ def test_table_says_what_its_columns_are(young):
 def test_what_has_not_settled_is_said_below_the_table_and_in_json(monkeypatch, found):
     one = found[0]
     nowhere = hsi.Ensemble(
-        samples=one.within.samples.copy(), estimate=one.within.estimate, interval=(float("nan"), float("nan")),
+        samples=one.pmc.samples.copy(), estimate=one.pmc.estimate, interval=(float("nan"), float("nan")),
         converged=False, reason="too few", seed=1, rule=hsi.PercentileRule())
-    unsettled = hsi.Assessment(bridge=one.bridge, flow=one.flow, effective=one.effective, without=one.without,
-                               within=nowhere, guide=one.guide, remarks=("PMC: too few",))
+    unsettled = hsi.Assessment(bridge=one.bridge, flow=one.flow, effective=one.effective, mf=one.mf,
+                               pmc=nowhere, guide=one.guide, remarks=("PMC: too few",))
     monkeypatch.setattr(assessment, "assess", lambda *args, **kwargs: unsettled)
     assert "Remark on 15 persons: PMC: too few." in run("assess", *QUICK).stdout
     row = json.loads(run("assess", *QUICK, "--json").stdout)["rows"][0]
@@ -151,7 +151,7 @@ def test_figure_is_of_the_flow_with_the_largest_acceleration(monkeypatch, young,
     drawn = []
     monkeypatch.setattr("hsictrl.cli.figure.draw", lambda path, one, case: drawn.append(one) or path.touch())
     run("assess", young, "--figure", tmp_path / "a.pdf")
-    assert drawn == [max(found, key=lambda one: one.within.estimate)]
+    assert drawn == [max(found, key=lambda one: one.pmc.estimate)]
 
 
 @pytest.mark.usefixtures("assessed")
@@ -160,7 +160,7 @@ def test_figure_shows_the_trial_that_it_names(monkeypatch, young, found, tmp_pat
     monkeypatch.setattr("hsictrl.plots.assessment_figure",
                         lambda **words: given.update(words) or SimpleNamespace(figure=Figure()))
     run("assess", young, "--figure", tmp_path / "a.png")
-    largest = max(found, key=lambda one: one.within.estimate)
+    largest = max(found, key=lambda one: one.pmc.estimate)
     assert "trial 0 of seed 3" in given["title"]
     assert str(largest.flow) in given["title"]
     for response, ensemble in zip(given["responses"], given["ensembles"], strict=True):
@@ -259,7 +259,7 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("assess --damping 5", "damping must lie in [0, 1), got 5; give a fraction, not percent"),
     ("assess --damping -0.005", "damping must lie in [0, 1), got -0.005; give a fraction, not percent"),
     ("assess --damping nan", "damping must lie in [0, 1), got nan; give a fraction, not percent"),
-    ("assess --damping 0", "damping must lie in (0, 1), got 0; give a fraction, not percent"),
+    ("assess --damping 0", "damping[0] must lie in (0, 1), got 0; nothing settles without; give such as 0.005"),
     ("assess --frequency -2", "frequency must be above 0, got -2; give Hz"),
     ("assess --frequency inf", "frequency must be above 0, got inf; give Hz"),
     ("assess --modal-mass 0", "modal_mass must be above 0, got 0; give kg"),
@@ -270,7 +270,7 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("assess --density 0.003", "density must put at least one person on the deck of 150 m², got 0.003 persons/m²;"),
     ("assess --percentile 100", "percentile must lie in (0, 100), got 100; give percent, such as 95"),
     ("assess --tolerance 5", "tolerance must lie in (0, 1), got 5; give a fraction, not percent"),
-    ("assess --seed -1", "seed must be at least 0, got -1; give any other whole number"),
+    ("assess --seed -1", "seed must be at least 0, got -1; give 0, 1, 2"),
     ("assess --processes 0", "processes must be at least 1, got 0; give 1 to run in place"),
     ("assess --figure TMP/no/a.png", "the output folder must exist, got TMP/no; make it first"),
     ("assess --figure TMP", "a figure must be a file that ends in one of .avif"),

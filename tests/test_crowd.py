@@ -188,7 +188,8 @@ def test_tuned_walkers_keep_all_but_their_step(mean):
     assert tuned.target == mean
     np.testing.assert_allclose(tuned.walkers.step_frequency - mean, traffic.walkers.step_frequency - 2.0, atol=1e-14)
     np.testing.assert_array_equal(np.delete(columns(tuned), 2, axis=1), np.delete(columns(traffic), 2, axis=1))
-    assert tuned.walkers.draws[0] is traffic.walkers.draws[0]
+    assert np.shares_memory(tuned.walkers.draws[0], traffic.walkers.draws[0])
+    np.testing.assert_array_equal(tuned.walkers.draws[0], traffic.walkers.draws[0])
     assert tuned.standing_on(BRIDGE)[0] is traffic.standing_on(BRIDGE)[0]
 
 
@@ -275,3 +276,15 @@ def test_truncated_normal_is_the_quantile_of_scipy(draw, mean, spread):
 def test_a_draw_of_zero_is_a_body_all_the_same():
     assert truncated_normal(3.25, 0.32, np.array([0.0]))[0] > 0
     assert 0 < truncated_normal(0.3, 0.05, np.array([0.0]), high=1.0)[0] < 0.3
+
+
+def test_what_was_drawn_cannot_be_changed_afterwards():
+    rule, traffic = [2.0, 0.1], CrowdFlow(density=0.2).sample(BRIDGE, rng=np.random.default_rng(1))
+    stream = CrowdFlow(density=0.2, step_frequency=rule)
+    rule[0] = 99.0
+    assert stream.step_frequency == (2.0, 0.1)
+    with pytest.raises(AttributeError):
+        traffic.window = (3.0, 1.0)
+    for array in (traffic.walkers.model, traffic.walkers.draws[0], traffic.walkers.arrival):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1

@@ -118,13 +118,13 @@ def test_a_band_chooses_the_mode():
     assert len(hsi.effective(bench).competing) == 1
 
 
-def test_frf_reads_between_the_lines():
+def test_frf_gives_lines_of_the_measurement():
     people, x = crowd(15, [25.0])
-    bridge, hertz = beam(), np.linspace(1.5005, 2.5005, 50)
-    found = hsi.frf(hsi.couple(measured(bridge, [25.0]), people, x), hertz)
-    expected = hsi.couple(bridge, people, x)(2j * np.pi * hertz)
-    np.testing.assert_allclose(found.frdata[0, 0], expected, rtol=1e-4)
-    np.testing.assert_array_equal(found.omega, 2 * np.pi * hertz)
+    bench = measured(beam(), [25.0])
+    lines = bench.response.omega[[3, 100, 700]]
+    found = hsi.frf(hsi.couple(bench, people, x), lines / (2 * np.pi))
+    np.testing.assert_allclose(found.frdata[0, 0], hsi.couple(beam(), people, x)(1j * lines), rtol=1e-10)
+    np.testing.assert_allclose(found.omega, lines)
 
 
 def test_bodies_of_the_other_direction_couple_to_nothing():
@@ -185,12 +185,16 @@ def bench(**changed):
 
 @pytest.mark.parametrize(("make", "error", "message"), [
     (lambda: bench(response=np.ones(5)), TypeError,
-     "response must be a FrequencyResponseData, got ndarray; use control."),
+     "response must be of type FrequencyResponseData, got ndarray; use control."),
     (lambda: bench(positions=[10.0]), ValueError,
      r"response must have a row and a column for each of the 1 positions, got shape \(2, 2\); measure the force"),
     (lambda: bench(positions=[]), ValueError, r"positions must hold at least 1 place\(s\), got 0; give x"),
     (lambda: bench(response=ct.frd(np.ones((2, 2, 3)), [1.0, 2.0, 3.0])), ValueError,
-     "omega must increase over at least 4 frequencies, got 3; sort the record by frequency"),
+     "the response's omega must hold at least 4 frequencies, got 3; measure at more"),
+    (lambda: bench(response=ct.frd(np.ones((2, 2, 6)), [1.0, 2.0, 4.0, 3.0, 5.0, 4.0])), ValueError,
+     r"the response's omega\[3\] must be above omega\[2\], got 3 rad/s after 4 rad/s; sort the record by frequency"),
+    (lambda: bench(response=ct.frd(np.ones((2, 2, 5)), [1.0, 2.0, 2.0, 3.0, 4.0])), ValueError,
+     r"the response's omega\[2\] must be above omega\[1\], got 2 rad/s after 2 rad/s; .* give each once"),
     (lambda: bench(response=ct.frd(np.ones((2, 2, 5)), np.arange(5.0))), ValueError,
      r"the response's omega\[0\] must be above 0, got 0; leave out 0 rad/s"),
     (lambda: bench(response=ct.frd(np.full((2, 2, 5), np.nan), np.arange(1.0, 6.0))), ValueError,
@@ -213,7 +217,7 @@ def bench(**changed):
     (lambda: hsi.effective(measured(beam(), [25.0]), band=(3.0, 9.0)), ValueError,
      "must hold a peak .* 3 and 4 Hz; wid"),
     (lambda: hsi.frf(measured(beam(), [25.0]), [0.5, 2.0]), ValueError,
-     r"frequencies must lie in the measured band \[1, 4\] Hz, got 0.5 to 2; stay inside it"),
+     "frequencies must be lines of the measurement, got 0.5 Hz, whose nearest line is 1 Hz; take them"),
 ])
 def test_refusals(make, error, message):
     with pytest.raises(error, match=message):

@@ -118,8 +118,8 @@ def test_further_forces_act_as_on_the_empty_bridge_before_anybody_comes() -> Non
 
 
 @pytest.mark.parametrize(("call", "message"), [
-    (lambda: hsi.moving_crowd("bridge", TRAFFIC), "bridge must be a Footbridge, got str; describe"),
-    (lambda: hsi.moving_crowd(BRIDGE, [walker()]), "traffic must be a Traffic, got list; draw it"),
+    (lambda: hsi.moving_crowd("bridge", TRAFFIC), "bridge must be of type Footbridge, got str; describe"),
+    (lambda: hsi.moving_crowd(BRIDGE, [walker()]), "traffic must be of type Traffic, got list; draw it"),
     (lambda: hsi.moving_crowd(BRIDGE, TRAFFIC).at(np.nan), "time must be finite, got nan; give s"),
     (lambda: hsi.moving_crowd(BRIDGE, TRAFFIC).at("now"), "time must be real numbers, got 'now'; give s"),
     (lambda: hsi.moving_crowd(BRIDGE, TRAFFIC).to_nlsys(sense_at=[51.0]), "sense_at must lie on the deck"),

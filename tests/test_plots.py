@@ -38,7 +38,10 @@ def acceleration(amplitude: float, name: str | None) -> ct.TimeResponseData:
     return ct.TimeResponseData(TIME, signal, issiso=True, sysname=name)
 
 
-def study(scale: float, rule: hsi.StopRule = hsi.PercentileRule(tolerance=0.2)) -> hsi.Ensemble:  # noqa: B008
+WIDE = hsi.PercentileRule(tolerance=0.2)
+
+
+def study(scale: float, rule: hsi.StopRule = WIDE) -> hsi.Ensemble:
     return hsi.monte_carlo(lambda rng: rng.rayleigh(scale), rule=rule)
 
 
@@ -178,15 +181,15 @@ def test_frf_refusals() -> None:
     two = hsi.frf(hsi.couple(BRIDGE, [], [], sense_at=[10.0, 25.0]), HERTZ)
     with pytest.raises(ValueError, match=r"responses must have one input and one output, got 1 and 2; choose a pair"):
         frf_plot(two)
-    with pytest.raises(TypeError, match="responses must be a FrequencyResponseData, got OccupiedBridge; compute"):
+    with pytest.raises(TypeError, match="responses must be of type FrequencyResponseData, got OccupiedBridge; compute"):
         frf_plot(OCCUPIED)
-    with pytest.raises(TypeError, match="effective must be a EffectiveProperties, got float; compute"):
+    with pytest.raises(TypeError, match="effective must be of type EffectiveProperties, got float; compute"):
         frf_plot(FRFS, effective=3.25)
     with pytest.raises(ValueError, match="responses must hold at least one FrequencyResponseData, got none; compute"):
         frf_plot([])
     with pytest.raises(ValueError, match="labels must be one per curve, got 1 for 2; give as many"):
         frf_plot(FRFS, labels="both")
-    with pytest.raises(TypeError, match="ax must be a Axes, got str; make one"):
+    with pytest.raises(TypeError, match="ax must be of type Axes, got str; make one"):
         frf_plot(FRFS, ax="here")
     assert plt.get_fignums() == []
 
@@ -249,7 +252,7 @@ def test_response_refusals() -> None:
     both = ct.TimeResponseData(TIME, np.zeros((2, 1001)), issiso=False)
     with pytest.raises(ValueError, match="responses must have one output, got 2; predict with one point"):
         response_plot(both)
-    with pytest.raises(TypeError, match="responses must be a TimeResponseData, got ndarray; give predict"):
+    with pytest.raises(TypeError, match="responses must be of type TimeResponseData, got ndarray; give predict"):
         response_plot(TIME)
 
 
@@ -293,9 +296,9 @@ def test_convergence_refusals() -> None:
     with pytest.raises(ValueError, match=r"ensembles must hold one quantity, got samples of shape \(100, 2\); run one"):
         convergence_plot(rows)
     several = study(1.0, hsi.AllRules([hsi.MeanRule(tolerance=0.5)]))
-    with pytest.raises(TypeError, match="rule of each ensemble must be a PercentileRule or MeanRule, got AllRules"):
+    with pytest.raises(TypeError, match="each ensemble must be of type PercentileRule or MeanRule, got AllRules"):
         convergence_plot(several)
-    with pytest.raises(TypeError, match="ensembles must be a Ensemble, got ndarray; run hsictrl"):
+    with pytest.raises(TypeError, match="ensembles must be of type Ensemble, got ndarray; run hsictrl"):
         convergence_plot(STUDIES[0].samples)
 
 

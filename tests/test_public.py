@@ -14,7 +14,7 @@ import hsictrl as hsi
 
 NUMERIC = re.compile(r"\b(float|int|complex|array|array_like|number)\b")
 NO_QUANTITY = re.compile(r"\b(str|mask)\b")
-UNIT = re.compile(r"\[[^\]]+\]")
+UNIT_LAST = re.compile(r"\[[^\]]+\]\.$")
 PASSED_ON = {"interconnect"}    # has the host's signature; the host refuses what it does not know
 
 
@@ -61,11 +61,11 @@ def test_every_parameter_is_described(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", PUBLIC)
-def test_every_number_has_a_unit(name: str) -> None:
+def test_the_description_of_every_number_ends_with_its_unit(name: str) -> None:
     bare = [key for key, entry in described(PUBLIC[name]).items()
             if NUMERIC.search(entry.type) and not NO_QUANTITY.search(entry.type)
-            and not UNIT.search(" ".join(entry.desc))]
-    assert not bare, f"{name} gives no unit for {bare}"
+            and not UNIT_LAST.search(" ".join(entry.desc))]
+    assert not bare, f"{name} ends without a unit on {bare}"
 
 
 @pytest.mark.parametrize("name", [name for name in CALLABLE if name not in PASSED_ON])

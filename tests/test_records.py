@@ -70,7 +70,7 @@ def test_shape_is_that_of_the_outputs() -> None:
 
 def test_refusals() -> None:
     time = np.linspace(0.0, 1.0, 11)
-    with pytest.raises(TypeError, match="response must be a TimeResponseData, got ndarray; give"):
+    with pytest.raises(TypeError, match="response must be of type TimeResponseData, got ndarray; give"):
         running_rms(time)
     with pytest.raises(ValueError, match="duration must be above 0, got 0; give seconds"):
         running_rms(record(time, time), duration=0.0)

@@ -341,7 +341,7 @@ def test_nobody_has_no_sensitivity():
 
 @pytest.mark.parametrize(("make", "error", "message"), [
     (lambda: hsi.effective(ct.ss(-1, 1, 1, 0)), TypeError,
-     "system must be a OccupiedBridge .*, got StateSpace; make one"),
+     "system must be of type OccupiedBridge .*, got StateSpace; make one"),
     (lambda: hsi.effective(beam(), method="circle"), ValueError,
      "method must be one of 'peak', .*, got 'circle'; choose"),
     (lambda: hsi.effective(beam(), mode=1), ValueError, "mode must be below the number of modes 1, got 1; count modes"),
@@ -370,7 +370,9 @@ def test_nobody_has_no_sensitivity():
     (lambda: hsi.frf(beam(), 2.0), ValueError, r"frequencies must have 1 dimension\(s\), got shape \(\); give an incr"),
     (lambda: hsi.frf("bridge", [2.0]), TypeError, r"system must be .*, got str; make one with couple\("),
     (lambda: hsi.effective_sensitivity(beam()), TypeError,
-     "occupied must be a OccupiedBridge, got Footbridge; make one"),
+     "occupied must be of type OccupiedBridge, got Footbridge; make one"),
+    (lambda: hsi.effective_map(hsi.couple(beam()), [2.0], [0.01]), TypeError,
+     r"crowd must be of type CondensedCrowd, got OccupiedBridge; give couple\(bridge, people, positions\).condensed"),
     (lambda: hsi.effective_map(hsi.couple(beam(2)).condensed, [2.0], [0.01]), ValueError,
      r"the crowd must stand on one mode, got 2; use effective\(\)"),
     (lambda: hsi.effective_map(hsi.couple(beam()).condensed, [2.0], [1.0]), ValueError,

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from hsictrl.bridge.shapes import DIRECTIONS, BeamShape, Shape, SineShape, beam_modes
+from hsictrl._checks import DIRECTIONS
+from hsictrl.bridge.shapes import BeamShape, Shape, SineShape, beam_modes
 
 PP, CC, CP, PC = ("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "pinned"), ("pinned", "clamped")
 UNEQUAL = [12.0, 20.0, 7.5]
@@ -252,7 +253,7 @@ def test_an_unknown_place_stays_unknown(shape):
 @pytest.mark.parametrize("moving", DIRECTIONS)
 def test_the_other_direction_is_zero(moving):
     other = DIRECTIONS[1 - DIRECTIONS.index(moving)]
-    for shape in (SineShape(10.0, direction=moving), beam_modes([4.0, 6.0], direction=moving)[0][1]):
+    for shape in (SineShape(10.0, direction=moving), BeamShape([4.0, 6.0], direction=moving)):
         assert abs(float(shape(2.0, 0.0, moving))) > 0.1
         assert np.array_equal(shape(np.array([2.0, 3.0]), 0.0, other), [0.0, 0.0])
 
@@ -325,7 +326,7 @@ def test_refusals(refused, message):
     ("refused", "message"),
     [
         (lambda: beam_modes(["ten"]), "spans must be real numbers, got .'ten'.; give a list"),
-        (lambda: beam_modes([10.0], "pinned"), "ends must be a tuple or list, got str; give one"),
+        (lambda: beam_modes([10.0], "pinned"), "ends must be of type tuple or list, got str; give one"),
         (lambda: beam_modes([10.0], n_modes=2.0), "n_modes must be a whole number, got 2.0; ask for"),
     ],
 )

@@ -54,14 +54,12 @@ class MeasuredBridge:
             raise ValueError(f"response must have a row and a column for each of the {len(places)} positions, got "
                              f"shape {self.response.shape}; measure the force at every point, at every point")
         check.numbers("the response's omega", self.response.omega, above=0, remedy="leave out 0 rad/s and below")
-        if len(self.response.omega) < 4 or np.any(np.diff(self.response.omega) <= 0):
-            raise ValueError("the response's omega must increase over at least 4 frequencies, got "
-                             f"{len(self.response.omega)}; sort the record by frequency")
+        _check_rising(self.response.omega)
         if not np.all(np.isfinite(self.response.frdata)):
             raise ValueError("response must be finite, got NaN or infinity; leave out the frequencies where it is not")
         check.choice("direction", self.direction, check.DIRECTIONS)
-        object.__setattr__(self, "positions", places)
-        object.__setattr__(self, "modal_mass", check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
+        mass = check.number("modal_mass", self.modal_mass, above=0, remedy="give kg")
+        check.store(self, positions=places, modal_mass=mass)
 
     def points_of(self, name: str, positions: Any) -> np.ndarray:
         """Index of the measured point at each place; refuse places where nothing was measured.
@@ -91,3 +89,14 @@ class MeasuredBridge:
             raise ValueError(f"{name} must be among the measured points, got {name}[{i}] = ({places[i, 0]:g}, "
                              f"{places[i, 1]:g}) m; move it to the nearest point, or measure there")
         return np.argmin(apart, axis=1)
+
+
+def _check_rising(omega: Array) -> None:
+    """At least the four points of a cubic, in order."""
+    if len(omega) < 4:
+        raise ValueError(f"the response's omega must hold at least 4 frequencies, got {len(omega)}; measure at more")
+    falls = np.flatnonzero(np.diff(omega) <= 0)
+    if len(falls):
+        i = falls[0]
+        raise ValueError(f"the response's omega[{i + 1}] must be above omega[{i}], got {omega[i + 1]:g} rad/s after "
+                         f"{omega[i]:g} rad/s; sort the record by frequency, and give each once")

@@ -192,6 +192,26 @@ class Footbridge:
                              "count modes from 0, or describe the bridge with more of them")
         return self.modes[index]
 
+    def moves_vertically(self, mode: int) -> bool:
+        """Whether a mode moves vertically at its antinode, so that walking can excite it.
+
+        Parameters
+        ----------
+        mode : int
+            Index of the mode, from 0 [-].
+
+        Returns
+        -------
+        bool
+
+        Examples
+        --------
+        >>> reference_bridge(frequency=2.0).moves_vertically(0)
+        True
+        """
+        shape = self.mode(mode).shape
+        return bool(np.any(shape(*shape.antinode, "vertical")))
+
     def carries(self, positions: Any) -> NDArray[np.bool_]:
         """Which places lie on the deck.
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal, final, get_args
+from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from hsictrl._checks import choice, instance, number, numbers, whole
-
-Array = NDArray[np.float64]
-Direction = Literal["vertical", "lateral"]
-DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
+from hsictrl import _checks as check
+from hsictrl._checks import Array, Direction
 
 # The derivative that vanishes with the deflection at such an end.
 _FREE_OF = {"pinned": 2, "clamped": 1}
@@ -111,9 +108,9 @@ class SineShape(Shape):
 
     def __post_init__(self) -> None:
         remedy = "give the length of the deck in metres"
-        _set(self, length=number("length", self.length, above=0.0, remedy=remedy))
-        _set(self, number=whole("number", self.number, least=1, remedy="count the half waves"))
-        choice("direction", self.direction, DIRECTIONS)
+        check.store(self, length=check.number("length", self.length, above=0.0, remedy=remedy))
+        check.store(self, number=check.whole("number", self.number, least=1, remedy="count the half waves"))
+        check.choice("direction", self.direction, check.DIRECTIONS)
 
     def __call__(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical") -> Array:
         return _evaluated(self, x, y, direction)
@@ -185,13 +182,13 @@ class BeamShape(Shape):
     _antinode: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        _set(self, spans=_checked_spans(self.spans), ends=_checked_ends(self.ends))
-        _set(self, number=whole("number", self.number, least=1, remedy="count the modes from one"))
-        choice("direction", self.direction, DIRECTIONS)
-        _set(self, length=float(np.sum(self.spans)))
-        _set(self, wavenumber=_wavenumber(self.spans, self.ends, self.number))
+        check.store(self, spans=_checked_spans(self.spans), ends=_checked_ends(self.ends))
+        check.store(self, number=check.whole("number", self.number, least=1, remedy="count the modes from one"))
+        check.choice("direction", self.direction, check.DIRECTIONS)
+        check.store(self, length=float(np.sum(self.spans)))
+        check.store(self, wavenumber=_wavenumber(self.spans, self.ends, self.number))
         null_vector = np.linalg.svd(_boundary(self.wavenumber, self.spans, self.ends))[2][-1]
-        _set(self, coefficients=null_vector.reshape(-1, 4))
+        check.store(self, coefficients=null_vector.reshape(-1, 4))
         self._normalise()
 
     def __call__(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical") -> Array:
@@ -235,7 +232,7 @@ class BeamShape(Shape):
         first = np.flatnonzero(np.abs(values) > (1 - 1e-9) * largest)[0]
         coefficients = self.coefficients / values[first]
         coefficients.flags.writeable = False
-        _set(self, coefficients=coefficients, _antinode=float(places[first]))
+        check.store(self, coefficients=coefficients, _antinode=float(places[first]))
 
     def _mean(self, of: Callable[[Array], Array]) -> float:
         """Gauss-Legendre quadrature between supports and sign changes, where |φ| is smooth."""
@@ -248,14 +245,15 @@ class BeamShape(Shape):
 
 def beam_modes(
     spans: ArrayLike, ends: tuple[str, str] = ("pinned", "pinned"), n_modes: int = 1,
-    direction: Direction = "vertical",
 ) -> list[tuple[float, BeamShape]]:
     """Return the lowest modes of a uniform Euler-Bernoulli beam on several spans.
 
     Parameters
     ----------
-    spans, ends, direction
-        As of `BeamShape`.
+    spans : array_like
+        Lengths of the spans, from left to right [m].
+    ends : (str, str)
+        How the left and the right end are held, each "pinned" or "clamped".
     n_modes : int
         Number of modes [-].
 
@@ -270,36 +268,31 @@ def beam_modes(
     >>> [round(ratio, 4) for ratio, shape in beam_modes([25.0, 25.0], n_modes=4)]
     [1.0, 1.5622, 4.0, 5.0625]
     """
-    n_modes = whole("n_modes", n_modes, least=1, remedy="ask for one mode or more")
+    n_modes = check.whole("n_modes", n_modes, least=1, remedy="ask for one mode or more")
     lengths = _checked_spans(spans)
-    shapes = [BeamShape(lengths, ends, j, direction) for j in range(1, n_modes + 1)]
+    shapes = [BeamShape(lengths, ends, j) for j in range(1, n_modes + 1)]
     return [((shape.wavenumber / shapes[0].wavenumber) ** 2, shape) for shape in shapes]
-
-
-def _set(shape: Shape, **values: Any) -> None:
-    for name, value in values.items():
-        object.__setattr__(shape, name, value)
 
 
 def _checked_spans(spans: ArrayLike) -> Array:
     remedy = "give a list with the length of each span in metres"
-    lengths = numbers("spans", spans, above=0.0, ndim=1, remedy=remedy)
-    whole("the number of spans", lengths.size, least=1, remedy=remedy)
+    lengths = check.numbers("spans", spans, above=0.0, ndim=1, remedy=remedy)
+    check.whole("the number of spans", lengths.size, least=1, remedy=remedy)
     remedy = f"leave out spans below {_SHORTEST:g} of the longest and clamp the beam there"
-    return numbers("spans", lengths, least=_SHORTEST * np.max(lengths), remedy=remedy)
+    return check.numbers("spans", lengths, least=_SHORTEST * np.max(lengths), remedy=remedy)
 
 
 def _checked_ends(ends: tuple[str, str]) -> tuple[str, str]:
     remedy = "give one word for each end, as in ('pinned', 'clamped')"
-    if len(instance("ends", ends, (tuple, list), remedy)) != 2:
+    if len(check.instance("ends", ends, (tuple, list), remedy)) != 2:
         raise ValueError(f"ends must be two, got {len(ends)}; {remedy}")
     for end in ends:
-        choice("each of the ends", end, tuple(_FREE_OF))
+        check.choice("each of the ends", end, tuple(_FREE_OF))
     return ends[0], ends[1]
 
 
 def _evaluated(shape: SineShape | BeamShape, x: ArrayLike, y: ArrayLike, direction: Direction) -> Array:
-    choice("direction", direction, DIRECTIONS)
+    check.choice("direction", direction, check.DIRECTIONS)
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if direction != shape.direction:
         return np.zeros(np.broadcast_shapes(x.shape, y.shape))

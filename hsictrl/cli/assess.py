@@ -80,15 +80,15 @@ def assess(
 
 
 def _rehearse(case: Description) -> None:
-    """Ask what refuses a flow once, before the long work: the design guide."""
+    """Ask what refuses a flow once, before the long work."""
     for flow in case.flows:
-        assessment.guide_value(case.bridge, flow)
+        assessment.check_assessable(case.bridge, flow)
 
 
 def _draw(path: Path, found: list[assessment.Assessment], case: Description) -> None:
     from hsictrl.cli.figure import draw  # only now: it loads matplotlib
 
-    largest = max(found, key=lambda one: one.within.estimate)
+    largest = max(found, key=lambda one: one.pmc.estimate)
     with whole_file(path) as draft:
         draw(draft, largest, case)
 

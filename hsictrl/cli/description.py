@@ -86,7 +86,7 @@ class Description:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        check.whole("seed", self.seed, least=0, remedy="give any other whole number")
+        check.whole("seed", self.seed, least=0, remedy="give 0, 1, 2, …")
         for flow in self.flows:
             if not flow.persons_on(self.bridge):
                 raise ValueError(f"density must put at least one person on the deck of {self.bridge.area:g} m², got "

@@ -23,7 +23,7 @@ def draw(path: Path, found: Assessment, case: Description) -> None:
     first = [trial.prediction(trial_rng(case.seed, 0)) for trial in trials]
     plot = plots.assessment_figure(
         frfs=[_frf(one) for one in first], effective=[effective(one.system) for one in first],
-        responses=[one.response for one in first], ensembles=[found.without, found.within],
+        responses=[one.response for one in first], ensembles=[found.mf, found.pmc],
         title=f"{found.flow} on {str(case.bridge).splitlines()[0]}; (a), (b): trial 0 of seed {case.seed}")
     plots.save(plot, path)
 

@@ -127,10 +127,8 @@ class MovingCrowd:
         time = check.number("time", time, remedy="give s")
         walkers, places = self.traffic.walkers, self.traffic.walkers.places(time)
         present = self.bridge.carries(places)
-        system = couple(self.bridge, walkers.bodies.part(present), places[present],
-                        force_at=force_at, sense_at=sense_at, name="instant")
-        assert isinstance(system, OccupiedBridge)
-        return system
+        return couple(self.bridge, walkers.bodies.part(present), places[present],
+                      force_at=force_at, sense_at=sense_at, name="instant")
 
     def to_nlsys(self, *, force_at: Any = None, sense_at: Any = None, name: str = "moving") -> ct.NonlinearIOSystem:
         """Give the system to the host, walking forces included, for `control.input_output_response`.
@@ -161,7 +159,6 @@ class MovingCrowd:
         True
         """
         empty = couple(self.bridge, force_at=force_at, sense_at=sense_at)
-        assert isinstance(empty, OccupiedBridge)
         drive, sense = (self.bridge.participation(points) for points in (empty.force_at, empty.sense_at))
         rates, n_m, n = _rates(self, drive), self.bridge.n_modes, len(self.traffic.walkers)
         sizes = {"z": n_m, "u": n, "dz": n_m, "du": n}

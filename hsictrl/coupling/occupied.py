@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, final
+from typing import Any, final, overload
 
 import control as ct
 import numpy as np
@@ -21,6 +21,16 @@ from hsictrl.pedestrian import Crowd, Pedestrian
 Complex = NDArray[np.complex128]
 
 
+@overload
+def couple(
+    bridge: Footbridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = ..., positions: Any = ...,
+    *, force_at: Any = ..., sense_at: Any = ..., name: str = ...,
+) -> OccupiedBridge: ...
+@overload
+def couple(
+    bridge: MeasuredBridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = ..., positions: Any = ...,
+    *, force_at: Any = ..., sense_at: Any = ..., name: str = ...,
+) -> OccupiedMeasurement: ...
 def couple(
     bridge: Footbridge | MeasuredBridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = (), positions: Any = (),
     *, force_at: Any = None, sense_at: Any = None, name: str = "occupied",
@@ -65,8 +75,9 @@ def couple(
     check.instance("bridge", bridge, (Footbridge, MeasuredBridge), "describe the bridge first")
     places = check.points("positions", positions)
     crowd = _crowd(people, len(places))
-    kind = OccupiedBridge if isinstance(bridge, Footbridge) else OccupiedMeasurement
-    return kind(bridge, crowd, places, force_at=force_at, sense_at=sense_at, name=name)  # type: ignore[arg-type]
+    if isinstance(bridge, MeasuredBridge):
+        return OccupiedMeasurement(bridge, crowd, places, force_at=force_at, sense_at=sense_at, name=name)
+    return OccupiedBridge(bridge, crowd, places, force_at=force_at, sense_at=sense_at, name=name)
 
 
 @final
@@ -117,6 +128,8 @@ class OccupiedBridge(ct.StateSpace):
             *self._matrices(), 0, name=name,
             inputs=_labels("F", len(self.force_at)), outputs=_labels("a", len(self.sense_at)),
             states=_labels("z", n_m) + _labels("u", n) + _labels("dz", n_m) + _labels("du", n))
+        for matrix in (self.A, self.B, self.C, self.D):    # `horner` would not follow a change
+            matrix.flags.writeable = False
 
     def _matrices(self) -> tuple[Array, Array, Array, Array]:
         """A_c, B_c, C_c, D_c of (A.8) by their structure: only the modal mass matrix is ever inverted."""

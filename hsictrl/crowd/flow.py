@@ -121,7 +121,7 @@ class CrowdFlow:
         if self.speed is not None:
             check.number("speed", self.speed, above=0, most=10, remedy="give m/s, at most 10")
         if self.step_frequency is not None:
-            _step_rule(self.step_frequency)
+            object.__setattr__(self, "step_frequency", _step_rule(self.step_frequency))
         check.number("weight", self.weight, above=0, remedy="give N")
         check.instance("population", self.population, Population, "use Population.walking()")
 
@@ -273,12 +273,12 @@ class CrowdFlow:
             speed=np.full(n, self.speed_on(bridge)), arrival=latest_first,
             offset=(across.random(n) - 0.5) * bridge.width)
         return Traffic(walkers.part(slice(None, None, -1)), window=(0.0, crossing), target=mean,
-                       standing=self.crowd(bridge, standing))
+                       standing=self.crowd(bridge, standing), drawn_from=earliest)
 
     def _step_rule_on(self, bridge: Footbridge) -> tuple[float, float]:
         """Mean and standard deviation of the step frequencies [Hz]."""
-        if self.step_frequency is not None:
-            return _step_rule(self.step_frequency)
+        if isinstance(self.step_frequency, tuple):    # as it is stored
+            return self.step_frequency
         spread = SPARSE_SPREAD if self.density_on(bridge) < SPARSE_BELOW else 0.0
         return resonant_step_frequency(bridge.modes[0].frequency)[0], spread
 
@@ -319,8 +319,8 @@ def _enough(mean: float) -> int:
 
 def _step_rule(rule: Any) -> tuple[float, float]:
     """Mean and standard deviation from a number or a pair [Hz]."""
-    pair = np.atleast_1d(check.numbers("step_frequency", rule, least=0, remedy=str(BY_HAND["remedy"])))
+    pair = np.atleast_1d(check.numbers("step_frequency", rule, least=0, remedy=BY_HAND["remedy"]))
     if pair.shape not in ((1,), (2,)):
         raise ValueError(f"step_frequency must be a number or (mean, standard deviation), got shape {pair.shape}; "
                          "give one of these")
-    return check.number("step_frequency", pair[0], **BY_HAND), float(pair[1]) if len(pair) == 2 else 0.0  # type: ignore[arg-type]
+    return check.number("step_frequency", pair[0], **BY_HAND), float(pair[1]) if len(pair) == 2 else 0.0

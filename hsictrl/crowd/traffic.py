@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import final
+from dataclasses import KW_ONLY, InitVar, dataclass, replace
+from typing import Any, final
 
 import numpy as np
 
@@ -17,6 +18,7 @@ WALKING_RANGE = (1.0, 2.5)
 
 
 @final
+@dataclass(frozen=True, slots=True, eq=False)
 class Traffic:
     """Walkers on their way over the bridge, drawn by `CrowdFlow.sample` or made by hand.
 
@@ -27,13 +29,15 @@ class Traffic:
     window : (float, float), optional
         Start and end of the time that is observed; from the first arrival to the last departure
         if not given [s].
-    rng : numpy.random.Generator, optional
-        Source of randomness, for walkers made by hand whose forces draw any.
     target : float, optional
         Step frequency f_l about which the walkers are tuned; the mean if not given [Hz].
     standing : (Crowd, array of shape (n, 2)), optional
-        Bodies and places [m] of the crowd that stands for the moving one in a pseudo-moving crowd; the
-        walkers on the deck in the middle of the window if not given.
+        Bodies and places of the crowd that stands for the moving one in a pseudo-moving crowd; the
+        walkers on the deck in the middle of the window if not given [m].
+    drawn_from : float, optional
+        Time from which arrivals were drawn; nothing is left out of traffic made by hand [s].
+    rng : numpy.random.Generator, optional
+        Source of randomness, for walkers made by hand whose forces draw any.
 
     Examples
     --------
@@ -43,26 +47,29 @@ class Traffic:
     1 walker at 2.00 Hz
     """
 
-    __slots__ = ("_standing", "_target", "walkers", "window")
+    walkers: Walkers
+    _: KW_ONLY
+    window: tuple[float, float] | None = None
+    target: float = None  # type: ignore[assignment]
+    standing: tuple[Crowd, Array] | None = None
+    drawn_from: float | None = None
+    rng: InitVar[np.random.Generator | None] = None
 
-    def __init__(
-        self, walkers: Sequence[Walker] | Walkers, *, window: tuple[float, float] | None = None,
-        rng: np.random.Generator | None = None, target: float | None = None,
-        standing: tuple[Crowd, Array] | None = None,
-    ) -> None:
-        self.walkers = walkers if isinstance(walkers, Walkers) else _by_hand(walkers, rng)
-        self.window = None if window is None else _window(window)
-        self._target = None if target is None else check.number("target", target, above=0, remedy="give Hz")
-        self._standing = None if standing is None else _standing(standing)
+    def __post_init__(self, rng: np.random.Generator | None) -> None:
+        given: Any = self.walkers
+        walkers = given if isinstance(given, Walkers) else _by_hand(given, rng)
+        target = float(np.mean(walkers.step_frequency)) if self.target is None else self.target
+        store = object.__setattr__
+        store(self, "walkers", walkers)
+        store(self, "target", check.number("target", target, above=0, remedy="give Hz"))
+        store(self, "window", None if self.window is None else _window(self.window))
+        store(self, "standing", None if self.standing is None else _standing(self.standing))
+        if self.drawn_from is not None:
+            store(self, "drawn_from", check.number("drawn_from", self.drawn_from, remedy="give s"))
 
     def __str__(self) -> str:
         n = len(self.walkers)
         return f"{n} walker{'' if n == 1 else 's'} at {self.target:.2f} Hz"
-
-    @property
-    def target(self) -> float:
-        """Step frequency f_l about which the walkers step [Hz]."""
-        return float(self.walkers.step_frequency.mean()) if self._target is None else self._target
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -179,14 +186,14 @@ class Traffic:
         >>> len(people), places
         (1, array([[25.,  0.]]))
         """
-        if self._standing is not None:
-            return self._standing
+        if self.standing is not None:
+            return self.standing
         places = self.walkers.places(float(np.mean(self.observed(bridge))))
         present = bridge.carries(places)
         return self.walkers.bodies.part(present), places[present]
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
-        return Traffic(walkers, window=self.window, target=target, standing=self._standing)
+        return replace(self, walkers=walkers, target=target, rng=None)
 
 
 def _by_hand(walkers: Sequence[Walker], rng: np.random.Generator | None) -> Walkers:

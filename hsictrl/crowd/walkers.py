@@ -15,7 +15,15 @@ from hsictrl._checks import Array
 from hsictrl.pedestrian import Crowd, Pedestrian
 from hsictrl.walking import ForceLines, WalkingForce
 
-BY_HAND = {"least": 0.5, "most": 3.5, "remedy": "people step at 0.5 to 3.5 Hz; give f_s, not a bridge frequency"}
+BY_HAND: dict[str, Any] = {
+    "least": 0.5, "most": 3.5, "remedy": "people step at 0.5 to 3.5 Hz; give f_s, not a bridge frequency"}
+RULES: dict[str, dict[str, Any]] = {
+    "weight": {"above": 0, "remedy": "give N"},
+    "step_frequency": BY_HAND,
+    "speed": {"above": 0, "most": 10, "remedy": "give m/s, at most 10"},
+    "arrival": {"remedy": "give s"},
+    "offset": {"remedy": "give m"},
+}
 Indices = NDArray[np.intp]
 
 
@@ -60,11 +68,8 @@ class Walker:
     def __post_init__(self) -> None:
         check.instance("body", self.body, Pedestrian, "use hsictrl.Pedestrian()")
         check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
-        check.number("weight", self.weight, above=0, remedy="give N")
-        check.number("step_frequency", self.step_frequency, **BY_HAND)  # type: ignore[arg-type]
-        check.number("speed", self.speed, above=0, most=10, remedy="give m/s, at most 10")
-        check.number("arrival", self.arrival, remedy="give s")
-        check.number("offset", self.offset, remedy="give m")
+        for name, rule in RULES.items():
+            object.__setattr__(self, name, check.number(name, getattr(self, name), **rule))
 
     def ss(self, *, name: str = "walker") -> ct.StateSpace:
         """Give the walker's body as a block, see `Pedestrian.ss`.
@@ -134,8 +139,14 @@ class Walkers:
         lengths = {name: len(getattr(self, name)) for name in ("bodies", "model", *ARRAYS)}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"walkers' arrays must have the same length, got {lengths}; give one value per walker")
+        object.__setattr__(self, "forces", tuple(self.forces))
+        object.__setattr__(self, "model", _read_only(np.array(self.model, dtype=np.intp)))
+        object.__setattr__(self, "draws", tuple(_read_only(np.asarray(table)[:]) for table in self.draws))
+        self._check_draws()
+
+    def _check_draws(self) -> None:
         expected = [(int(np.sum(self.model == i)), force.n_draws) for i, force in enumerate(self.forces)]
-        found = [np.shape(table) for table in self.draws]
+        found = [table.shape for table in self.draws]
         if found != expected or sum(n for n, _ in expected) != len(self.model):
             raise ValueError(f"draws must be one table per force model, a row per walker, of shapes {expected}, got "
                              f"{found}; draw them by rng.random((n, force.n_draws))")
@@ -302,6 +313,11 @@ class Walkers:
 
 
 ARRAYS = ("weight", "step_frequency", "speed", "arrival", "offset")
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    array.flags.writeable = False
+    return array
 
 
 def _draws(force: WalkingForce, n: int, rng: np.random.Generator | None) -> Array:

@@ -34,9 +34,7 @@ def occupied(mass_ratio: float, frequency_ratio: float) -> OccupiedBridge:
     """A crowd of equal bodies at x = (i + ½)L/N on the reference bridge."""
     bridge = bridge_of(frequency_ratio)
     n = persons_of(mass_ratio, bridge)
-    system = couple(bridge, BODY, (np.arange(n) + 0.5) * bridge.length / n)
-    assert isinstance(system, OccupiedBridge)
-    return system
+    return couple(bridge, BODY, (np.arange(n) + 0.5) * bridge.length / n)
 
 
 def report(recompute: bool, executor: Executor | None) -> Report:

@@ -18,8 +18,7 @@ from hsictrl.crowd import CrowdFlow
 from hsictrl.paper.fig3 import persons_of
 from hsictrl.paper.reports import Report, Rows, committed
 from hsictrl.resonance import effective_map
-from hsictrl.study import Ensemble, StopRule, monte_carlo
-from hsictrl.study.trials import looks
+from hsictrl.study import Ensemble, StopRule, checkpoints, monte_carlo
 
 MASS_RATIOS, DAMPINGS = (0.05, 0.1, 0.2, 0.3), (0.002, 0.005, 0.02)
 FREQUENCIES = tuple(np.linspace(1.0, 6.0, 51).round(3).tolist())
@@ -100,7 +99,7 @@ def _rows(mass_ratio: float, ensemble: Ensemble) -> Rows:
 
 def _settled_at(samples: Array, rule: StopRule) -> int:
     """Number of trials at which the study would have ended had this quantity been alone."""
-    return next(n for n in looks(rule, len(samples)) if rule.judge(samples[:n]).converged)
+    return next(n for n in checkpoints(rule, len(samples)) if rule.judge(samples[:n]).converged)
 
 
 def _statistics(name: str, ensemble: Ensemble, index: int) -> dict[str, float]:

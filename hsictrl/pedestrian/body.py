@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 
-PERCENT = "give a fraction, not percent"
 RULES: dict[str, dict[str, Any]] = {
     "mass": {"above": 0, "remedy": "give kg"},
     "frequency": {"above": 0, "remedy": "give Hz"},
-    "damping": {"least": 0, "below": 1, "remedy": PERCENT},
-    "sprung_ratio": {"above": 0, "most": 1, "remedy": PERCENT},
+    "damping": {"least": 0, "below": 1, "remedy": check.PERCENT},
+    "sprung_ratio": {"above": 0, "most": 1, "remedy": check.PERCENT},
 }
 Complex = NDArray[np.complex128]
 
@@ -95,8 +94,7 @@ class Pedestrian(SprungBody):
     direction: str = "vertical"
 
     def __post_init__(self) -> None:
-        for name in ("mass", "frequency", "damping", "sprung_ratio"):
-            object.__setattr__(self, name, check.number(name, getattr(self, name), **RULES[name]))
+        check.store(self, **{name: check.number(name, getattr(self, name), **rule) for name, rule in RULES.items()})
         check.choice("direction", self.direction, check.DIRECTIONS)
 
     def __str__(self) -> str:

@@ -44,8 +44,7 @@ class Crowd(SprungBody):
     def __post_init__(self) -> None:
         values: list[NDArray[Any]] = [check.numbers(name, getattr(self, name), **rule) for name, rule in RULES.items()]
         values.append(check.directions(self.direction))
-        for name, value in zip(self.__slots__, _same_length(values), strict=True):
-            object.__setattr__(self, name, value)
+        check.store(self, **dict(zip(self.__slots__, _same_length(values), strict=True)))
 
     @classmethod
     def of(cls, bodies: Sequence[Pedestrian]) -> Crowd:
@@ -141,7 +140,6 @@ class Crowd(SprungBody):
         return ct.ss(block_diag(*A), block_diag(*(b[:, :columns] for b in B)), block_diag(*C),
                      block_diag(*(d[:, :columns] for d in D)), inputs=_labels(ports, len(self)),
                      outputs=_labels(["F"], len(self)), states=_labels(["u", "du"], len(self)), name=name)
-
 
 
 def _same_length(values: Sequence[Any]) -> tuple[NDArray[Any], ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from hsictrl import _checks as check
 from hsictrl._draws import truncated_normal
-from hsictrl.pedestrian.body import PERCENT, RULES
+from hsictrl.pedestrian.body import RULES
 from hsictrl.pedestrian.crowd import Crowd
 
 
@@ -49,8 +49,8 @@ class Population:
     direction: str = "vertical"
 
     def __post_init__(self) -> None:
-        for name, most in (("frequency", None), ("damping", 1.0), ("mass", None)):
-            object.__setattr__(self, name, _mean_and_spread(name, getattr(self, name), most))
+        below = {"frequency": None, "damping": 1.0, "mass": None}
+        check.store(self, **{name: _mean_and_spread(name, getattr(self, name), one) for name, one in below.items()})
         check.number("sprung_ratio", self.sprung_ratio, **RULES["sprung_ratio"])
         check.choice("direction", self.direction, check.DIRECTIONS)
 
@@ -124,19 +124,17 @@ class Population:
         n = check.whole("n", n, least=0, remedy="give the number of bodies to draw")
         check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
         draws = rng.random((n, 3)).T
+        pairs: list[tuple[float, float]] = [getattr(self, name) for name in ("frequency", "damping", "mass")]
+        frequency, damping, mass = pairs
         return Crowd(
-            frequency=truncated_normal(*_pair(self.frequency), draws[0]),
-            damping=truncated_normal(*_pair(self.damping), draws[1], high=1.0),
-            mass=truncated_normal(*_pair(self.mass), draws[2]),
+            frequency=truncated_normal(*frequency, draws[0]),
+            damping=truncated_normal(*damping, draws[1], high=1.0),
+            mass=truncated_normal(*mass, draws[2]),
             sprung_ratio=np.full(n, self.sprung_ratio), direction=np.full(n, self.direction))
 
 
-def _pair(normal: float | tuple[float, float]) -> tuple[float, float]:
-    return normal if isinstance(normal, tuple) else (normal, 0.0)
-
-
 def _mean_and_spread(name: str, value: Any, below: float | None) -> tuple[float, float]:
-    remedy = PERCENT if name == "damping" else "give a value, or (mean, standard deviation)"
+    remedy = check.PERCENT if name == "damping" else "give a value, or (mean, standard deviation)"
     pair = np.atleast_1d(check.numbers(name, value, least=0, remedy=remedy))
     if pair.shape not in ((1,), (2,)):
         raise ValueError(f"{name} must be a value or (mean, standard deviation), got shape {pair.shape}; {remedy}")

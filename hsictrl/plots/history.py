@@ -18,7 +18,7 @@ def response_plot(
     responses: ct.TimeResponseData | Sequence[ct.TimeResponseData], *, labels: str | Sequence[str] | None = None,
     ax: Axes | None = None,
 ) -> ct.ControlPlot:
-    """Draw accelerations over time: thin traces, their running 1-s r.m.s. in bold, and their peaks.
+    """Draw accelerations over time: thin traces, their running 1-s RMS in bold, and their peaks.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def response_plot(
     Returns
     -------
     control.ControlPlot
-        Its lines are all traces, then all running r.m.s., then all peaks.
+        Its lines are all traces, then all running RMS, then all peaks.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def response_plot(
 
 
 def _record(ax: Axes, index: int, record: ct.TimeResponseData, label: str) -> tuple[Line2D, Line2D, Line2D]:
-    """The trace, its running r.m.s. and its peak."""
+    """The trace, its running RMS and its peak."""
     time, signal = record.time, np.ravel(record.outputs)
     trace, = ax.plot(time, signal, color=canvas.colour(index), linewidth=0.8, alpha=0.7, label=label)
     bold, = ax.plot(time, np.ravel(running_rms(record)), linewidth=2.2, zorder=4, label="running 1-s RMS",

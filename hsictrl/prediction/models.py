@@ -200,9 +200,7 @@ def _system(model: str, bridge: Footbridge, traffic: Traffic, sense_at: Any) -> 
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
     people, places = traffic.standing_on(bridge) if model == "PMC" else ((), ())
-    system = couple(bridge, people, places, sense_at=sense_at, name=model)
-    assert isinstance(system, OccupiedBridge)
-    return system
+    return couple(bridge, people, places, sense_at=sense_at, name=model)
 
 
 def _relevant(

@@ -11,11 +11,11 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from hsictrl._checks import Array
-from hsictrl.coupling import OccupiedBridge, OccupiedMeasurement
+from hsictrl.coupling import CondensedCrowd, OccupiedBridge, OccupiedMeasurement
 
 Complex = NDArray[np.complex128]
-POINTS = 401
 # |1/H| of a resonance is nearly a parabola, so a grid this coarse brackets the narrowest peak.
+POINTS = 401
 
 
 class Curve(ABC):
@@ -51,7 +51,10 @@ class Curve(ABC):
     def half_power(self, peak: float) -> tuple[float, float]:
         """Angular frequencies on both sides of a peak where |H| falls to 1/√2 of it [rad/s]."""
         level = self.magnitude([peak])[0] / np.sqrt(2)
-        excess = lambda omega: self.magnitude([omega])[0] - level  # noqa: E731
+
+        def excess(omega: float) -> float:
+            return float(self.magnitude([omega])[0] - level)
+
         return _crossing(excess, peak, self.band[0]), _crossing(excess, peak, self.band[1])
 
 
@@ -62,7 +65,7 @@ class ModalCurve(Curve):
     def __init__(self, system: OccupiedBridge, index: int) -> None:
         self.system, self.index = system, index
         self.modal_mass = system.bridge.mode(index).modal_mass
-        self.band = _band(system)
+        self.band = peak_band(system.condensed, system.bridge.omega)
 
     def magnitude(self, omega: Any) -> Array:
         s = 1j * np.asarray(omega)
@@ -102,18 +105,17 @@ def dynamic_stiffness_slope(system: OccupiedBridge, s: complex) -> Complex:
     return np.asarray(2 * s * mass + s**2 * crowd.apparent_mass_slope(s) + modal)
 
 
-def _band(system: OccupiedBridge) -> tuple[float, float]:
-    """A band outside which no mode of the occupied bridge can have its peak [rad/s].
+def peak_band(crowd: CondensedCrowd, omega: Array) -> tuple[float, float]:
+    """A band outside which no mode can have its peak, of bridges with these angular frequencies and this crowd [rad/s].
 
     Below, Dunkerley's bound with the whole crowd as added mass; above, the frequency of bodies and bridge
     in series with all springs. Peaks of acceleration lie above the poles: hence the factors.
     """
-    mass = np.linalg.norm(system.condensed.apparent_mass(0)[0].real, 2)
-    bridge, bodies = system.bridge.omega, system.people.omega
-    softest = np.min(bodies, initial=bridge.min())
-    stiffest = np.max(bodies, initial=0.0)
-    low = 1 / np.sqrt((1 + mass) / bridge.min()**2 + 1 / softest**2)
-    return 0.5 * low, 2.0 * float(np.sqrt(bridge.max()**2 + (1 + mass) * stiffest**2))
+    mass = np.linalg.norm(crowd.apparent_mass(0)[0].real, 2)
+    softest = np.min(crowd.people.omega, initial=omega.min())
+    stiffest = np.max(crowd.people.omega, initial=0.0)
+    low = 1 / np.sqrt((1 + mass) / omega.min()**2 + 1 / softest**2)
+    return 0.5 * float(low), 2.0 * float(np.sqrt(omega.max()**2 + (1 + mass) * stiffest**2))
 
 
 def _crossing(excess: Any, peak: float, end: float) -> float:

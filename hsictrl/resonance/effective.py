@@ -35,8 +35,8 @@ class EffectiveProperties:
     method : str
         Definition by which frequency and damping were read: "peak", "pole" or "halfpower".
     competing : tuple of (float, float)
-        Frequency [Hz] and accelerance [m/s² per N] of every other local maximum, highest first. Where a
-        mode shifts, two peaks compete, and f_eff jumps from one to the other.
+        Frequency and accelerance of every other local maximum, highest first. Where a mode shifts, two
+        peaks compete, and f_eff jumps from one to the other [Hz, m/s² per N].
 
     Examples
     --------

@@ -29,7 +29,7 @@ def frf(
     system : OccupiedBridge, OccupiedMeasurement, Footbridge or MeasuredBridge
         What `couple` returns, or a bridge with nobody on it.
     frequencies : array_like, shape (w,)
-        Increasing frequencies above 0 [Hz].
+        Increasing frequencies above 0; of a measured bridge, lines of the measurement [Hz].
 
     Returns
     -------
@@ -49,7 +49,7 @@ def frf(
     system = occupied(system)
     if isinstance(system, OccupiedBridge):
         return ct.frequency_response(system, 2 * np.pi * hertz)
-    return _interpolated(system, 2 * np.pi * hertz)
+    return _measured(system, 2 * np.pi * hertz)
 
 
 def _short(hertz: np.ndarray) -> str:
@@ -57,12 +57,13 @@ def _short(hertz: np.ndarray) -> str:
     return f"{hertz[fall + 1]:g} Hz after {hertz[fall]:g} Hz" if len(hertz) else "none"
 
 
-def _interpolated(measured: OccupiedMeasurement, omega: np.ndarray) -> ct.FrequencyResponseData:
-    """Read a measurement between its lines."""
-    low, high = measured.omega[0], measured.omega[-1]
-    if omega[0] < low * (1 - 1e-12) or omega[-1] > high * (1 + 1e-12):
-        raise ValueError(f"frequencies must lie in the measured band [{low / (2 * np.pi):g}, {high / (2 * np.pi):g}] "
-                         f"Hz, got {omega[0] / (2 * np.pi):g} to {omega[-1] / (2 * np.pi):g}; stay inside it")
-    smooth = ct.frd(measured.frdata, measured.omega, smooth=True, inputs=measured.input_labels,
-                    outputs=measured.output_labels, name=measured.name)
-    return ct.frequency_response(smooth, omega)
+def _measured(system: OccupiedMeasurement, omega: np.ndarray) -> ct.FrequencyResponseData:
+    """Lines of a measurement; between them nothing is known but near a peak, see `effective`."""
+    lines = np.argmin(np.abs(system.omega[:, None] - omega), axis=0)
+    off = np.abs(system.omega[lines] / omega - 1) > 1e-9
+    if np.any(off):
+        first, nearest = (values[np.argmax(off)] / (2 * np.pi) for values in (omega, system.omega[lines]))
+        raise ValueError(f"frequencies must be lines of the measurement, got {first:g} Hz, whose nearest line is "
+                         f"{nearest:g} Hz; take them from system.omega / (2π), or ask effective() for a peak")
+    return ct.frd(system.frdata[:, :, lines], omega, inputs=system.input_labels, outputs=system.output_labels,
+                  name=system.name)

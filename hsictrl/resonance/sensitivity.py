@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,6 @@ from hsictrl.resonance.curves import dynamic_stiffness_slope
 from hsictrl.resonance.effective import effective
 
 Complex = NDArray[np.complex128]
-PARAMETERS = ("mass", "frequency", "damping", "sprung_ratio")
 
 
 @final
@@ -26,12 +25,15 @@ class EffectiveSensitivity:
 
     Parameters
     ----------
-    parameters : tuple of str
-        Names of the four columns: "mass", "frequency", "damping", "sprung_ratio".
     frequency : array, shape (n, 4)
         ∂f_eff/∂p, a row per body [Hz per kg, per Hz, per 1, per 1].
     damping : array, shape (n, 4)
         ∂ξ_eff/∂p, a row per body [1 per kg, per Hz, per 1, per 1].
+
+    Attributes
+    ----------
+    parameters : tuple of str
+        Names of the four columns: "mass", "frequency", "damping", "sprung_ratio".
 
     Examples
     --------
@@ -43,9 +45,9 @@ class EffectiveSensitivity:
     ('mass', True)
     """
 
+    parameters: ClassVar[tuple[str, ...]] = ("mass", "frequency", "damping", "sprung_ratio")
     frequency: Array
     damping: Array
-    parameters: tuple[str, ...] = PARAMETERS
 
 
 def effective_sensitivity(occupied: OccupiedBridge, *, mode: int = 0) -> EffectiveSensitivity:

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.coupling import CondensedCrowd
+from hsictrl.resonance.curves import Complex, peak_band
 
 POINTS, STEPS = 1200, 5
 LIGHTEST = 0.005      # lighter bodies resonate between the points of the grid
@@ -47,6 +48,7 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
     >>> print(frequency.round(4).ravel(), (100 * damping).round(3).ravel())
     [1.9709 3.2134] [0.758 2.147]
     """
+    check.instance("crowd", crowd, CondensedCrowd, "give couple(bridge, people, positions).condensed")
     omega_b = 2 * np.pi * check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give Hz")[:, None]
     xi = check.numbers("dampings", dampings, least=0, below=1, ndim=1, remedy="give fractions, not percent")[None, :]
     if crowd.rows.shape[1] != 1:
@@ -54,18 +56,11 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
                          "use effective() for bridges with several")
     check.numbers("the crowd's damping", crowd.people.damping, least=LIGHTEST,
                   remedy="use effective() for bodies with less")
-    band = _band(crowd, omega_b)
+    band = peak_band(crowd, omega_b)
     mass = _tabulated_mass(crowd, band)
     start = _grid_minimum(mass, band, omega_b, xi)
     omega = _refined(mass, start, omega_b, xi)
     return omega / (2 * np.pi), np.sqrt(_inverse_square(mass, omega, omega_b, xi)[0]) / 2
-
-
-def _band(crowd: CondensedCrowd, omega_b: Array) -> tuple[float, float]:
-    """Where the peaks of all the bridges can lie [rad/s]; see `resonance.curves`."""
-    mass, bodies = float(crowd.apparent_mass(0)[0, 0, 0].real), crowd.people.omega
-    low = 1 / np.sqrt((1 + mass) / omega_b.min()**2 + 1 / np.min(bodies, initial=omega_b.min())**2)
-    return 0.5 * float(low), 2 * float(np.hypot(omega_b.max(), np.sqrt(1 + mass) * np.max(bodies, initial=0.0)))
 
 
 def _tabulated_mass(crowd: CondensedCrowd, band: tuple[float, float]) -> CubicSpline:
@@ -102,5 +97,8 @@ def _inverse_square(mass: CubicSpline, omega: Array, omega_b: Array, xi: Array) 
     q = mass(omega) - r**2 - 2j * xi * r
     q1 = mass(omega, 1) + (2 * r**2 + 2j * xi * r) / omega
     q2 = mass(omega, 2) - (6 * r**2 + 4j * xi * r) / omega**2
-    dot = lambda a, b: (a * b.conj()).real  # noqa: E731
-    return dot(q, q), 2 * dot(q, q1), 2 * (dot(q1, q1) + dot(q, q2))
+    return _dot(q, q), 2 * _dot(q, q1), 2 * (_dot(q1, q1) + _dot(q, q2))
+
+
+def _dot(a: Complex, b: Complex) -> Array:
+    return (a * b.conj()).real

@@ -10,9 +10,9 @@ Source: Van Nimmen et al. (2017), section 2.3.
 
 from hsictrl.study.ensembles import Ensemble, History
 from hsictrl.study.rules import AllRules, Judgement, MeanRule, PercentileRule, StopRule
-from hsictrl.study.trials import monte_carlo, trial_rng
+from hsictrl.study.trials import checkpoints, monte_carlo, trial_rng
 
 __all__ = [
-    "AllRules", "Ensemble", "History", "Judgement", "MeanRule", "PercentileRule", "StopRule", "monte_carlo",
-    "trial_rng",
+    "AllRules", "Ensemble", "History", "Judgement", "MeanRule", "PercentileRule", "StopRule", "checkpoints",
+    "monte_carlo", "trial_rng",
 ]

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hsictrl._checks import Array
-from hsictrl.study.rules import StopRule, look
+from hsictrl.study.rules import StopRule, judged
 
 _HISTORY_POINTS = 64  # a smooth curve on a plot
 
 
+@final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class History:
     """The running estimate and its interval.
@@ -20,9 +22,9 @@ class History:
     Parameters
     ----------
     trials : ndarray
-        Rising numbers of trials, the last one the whole ensemble. [-]
+        Rising numbers of trials, the last one the whole ensemble [-].
     estimate, low, high : ndarray
-        Estimate and ends of its interval, one row per number of trials. [unit of the samples]
+        Estimate and ends of its interval, one row per number of trials [unit of the samples].
 
     Examples
     --------
@@ -41,6 +43,7 @@ class History:
         _freeze(self.trials, self.estimate, self.low, self.high)
 
 
+@final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Ensemble:
     """Every sample of a study and the last word of its stop rule.
@@ -48,19 +51,19 @@ class Ensemble:
     Parameters
     ----------
     samples : ndarray
-        Samples in index order, one column per quantity if the trial returns several. [unit of the trial]
+        Samples in index order, one column per quantity if the trial returns several [unit of the trial].
     estimate : float or ndarray
-        Estimate; a row per quantity and a column per rule where there are several. [unit of the trial]
+        Estimate; a row per quantity and a column per rule where there are several [unit of the trial].
     interval : tuple
-        Low and high end of the confidence interval, each shaped as `estimate`. [unit of the trial]
+        Low and high end of the confidence interval, each shaped as `estimate` [unit of the trial].
     converged : bool
-        Whether every estimate has settled. [-]
+        Whether every estimate has settled.
     reason : str
-        The same in a sentence. [-]
+        The same in a sentence.
     seed : int
-        Seed of the study; ``trial_rng(seed, i)`` is the generator of trial i. [-]
+        Seed of the study; ``trial_rng(seed, i)`` is the generator of trial i [-].
     rule : StopRule
-        The stop rule. [-]
+        The stop rule.
 
     Examples
     --------
@@ -82,7 +85,7 @@ class Ensemble:
 
     @property
     def n_trials(self) -> int:
-        """The number of trials. [-]"""
+        """The number of trials [-]."""
         return len(self.samples)
 
     def history(self) -> History:
@@ -93,7 +96,7 @@ class Ensemble:
         Returns
         -------
         History
-            Numbers of trials [-], estimates and ends of their intervals. [unit of the trial]
+            Numbers of trials [-], estimates and ends of their intervals [unit of the trial].
 
         Examples
         --------
@@ -104,11 +107,11 @@ class Ensemble:
         """
         first = min(self.rule.least_trials, self.n_trials)
         trials = np.unique(np.rint(np.geomspace(first, self.n_trials, _HISTORY_POINTS)).astype(int))
-        judged = [look(self.rule, self.samples[:n]) for n in trials]
+        found = [judged(self.rule, self.samples[:n]) for n in trials]
         return History(
-            trials=trials, estimate=np.array([one.estimate for one in judged]),
-            low=np.array([one.interval[0] for one in judged]),
-            high=np.array([one.interval[1] for one in judged]),
+            trials=trials, estimate=np.array([one.estimate for one in found]),
+            low=np.array([one.interval[0] for one in found]),
+            high=np.array([one.interval[1] for one in found]),
         )
 
     def __str__(self) -> str:

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from hsictrl._checks import Array, instance, number, numbers, whole
+from hsictrl import _checks as check
+from hsictrl._checks import Array
 
 
+@final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Judgement:
     """What a stop rule says about the samples of one quantity.
@@ -21,13 +23,13 @@ class Judgement:
     Parameters
     ----------
     estimate : float or ndarray
-        The estimate; one per member under `AllRules`. [unit of the samples]
+        The estimate; one per member under `AllRules` [unit of the samples].
     interval : tuple
-        Low and high end of its confidence interval; nan where no end exists yet. [unit of the samples]
+        Low and high end of its confidence interval; nan where no end exists yet [unit of the samples].
     converged : bool
-        Whether the estimate has settled. [-]
+        Whether the estimate has settled.
     reason : str
-        The same in a sentence. [-]
+        The same in a sentence.
 
     Examples
     --------
@@ -55,12 +57,12 @@ class StopRule(ABC):
     @property
     @abstractmethod
     def labels(self) -> tuple[str, ...]:
-        """The name of each estimate. [-]"""
+        """The name of each estimate."""
 
     @property
     @abstractmethod
     def least_trials(self) -> int:
-        """The smallest number of trials for which the interval exists. [-]"""
+        """The smallest number of trials for which the interval exists [-]."""
 
     @abstractmethod
     def judge(self, samples: ArrayLike) -> Judgement:
@@ -69,12 +71,12 @@ class StopRule(ABC):
         Parameters
         ----------
         samples : array_like
-            One sample per trial. [any unit]
+            One sample per trial [any unit].
 
         Returns
         -------
         Judgement
-            Estimate, interval, whether they have settled, and why. [unit of the samples]
+            Estimate, interval, whether they have settled, and why [unit of the samples].
 
         Examples
         --------
@@ -94,11 +96,11 @@ class PercentileRule(StopRule):
     Parameters
     ----------
     percentile : float
-        The percentile, above 0 and below 100. [%]
+        The percentile, above 0 and below 100 [%].
     tolerance : float
-        Largest distance from the estimate to either end, as a fraction of the estimate. [-]
+        Largest distance from the estimate to either end, as a fraction of the estimate [-].
     confidence : float
-        Confidence level of the interval, at least 0.5 and below 1. [-]
+        Confidence level of the interval, at least 0.5 and below 1 [-].
 
     Notes
     -----
@@ -118,7 +120,7 @@ class PercentileRule(StopRule):
     confidence: float = 0.95
 
     def __post_init__(self) -> None:
-        number("percentile", self.percentile, above=0, below=100, remedy="give percent, such as 95")
+        check.number("percentile", self.percentile, above=0, below=100, remedy="give percent, such as 95")
         _check_levels(self.tolerance, self.confidence)
 
     @property
@@ -134,7 +136,7 @@ class PercentileRule(StopRule):
         values, share = _one_quantity(samples), self.percentile / 100
         ends = stats.quantile_test(values, p=share).confidence_interval(confidence_level=self.confidence)
         estimate = float(np.quantile(values, share, method="hazen"))
-        return _judged(self, estimate, float(ends.low), float(ends.high), values.size)
+        return _weighed(self, estimate, float(ends.low), float(ends.high), values.size)
 
 
 @final
@@ -145,9 +147,9 @@ class MeanRule(StopRule):
     Parameters
     ----------
     tolerance : float
-        Largest distance from the mean to either end, as a fraction of the mean. [-]
+        Largest distance from the mean to either end, as a fraction of the mean [-].
     confidence : float
-        Confidence level of the interval, at least 0.5 and below 1. [-]
+        Confidence level of the interval, at least 0.5 and below 1 [-].
 
     Notes
     -----
@@ -176,7 +178,7 @@ class MeanRule(StopRule):
     def judge(self, samples: ArrayLike) -> Judgement:
         values = _one_quantity(samples)
         mean, reach = float(np.mean(values)), _student_reach(values, self.confidence)
-        return _judged(self, mean, mean - reach, mean + reach, values.size)
+        return _weighed(self, mean, mean - reach, mean + reach, values.size)
 
 
 @final
@@ -187,7 +189,7 @@ class AllRules(StopRule):
     Parameters
     ----------
     rules : sequence of StopRule
-        The members, none of them an `AllRules`. [-]
+        The members, none of them an `AllRules`.
 
     Notes
     -----
@@ -203,11 +205,11 @@ class AllRules(StopRule):
     rules: Sequence[StopRule]
 
     def __post_init__(self) -> None:
-        rules = tuple(instance("rules", self.rules, Sequence, "give a list of rules"))
-        whole("the number of rules", len(rules), least=1, remedy="give at least one rule")
+        rules = tuple(check.instance("rules", self.rules, Sequence, "give a list of rules"))
+        check.whole("the number of rules", len(rules), least=1, remedy="give at least one rule")
         for rule in rules:
             _check_member(rule)
-        object.__setattr__(self, "rules", rules)
+        check.store(self, rules=rules)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -221,7 +223,7 @@ class AllRules(StopRule):
         return _joined([rule.judge(samples) for rule in self.rules])
 
 
-def _judged(
+def _weighed(
     rule: PercentileRule | MeanRule, estimate: float, low: float, high: float, n: int,
 ) -> Judgement:
     allowed = rule.tolerance * abs(estimate)
@@ -252,24 +254,24 @@ def _student_reach(values: Array, confidence: float) -> float:
 
 
 def _one_quantity(samples: ArrayLike) -> Array:
-    values = numbers("samples", samples, ndim=1, remedy="give one finite number per trial")
-    whole("the number of samples", values.size, least=1, remedy="give one finite number per trial")
+    values = check.numbers("samples", samples, ndim=1, remedy="give one finite number per trial")
+    check.whole("the number of samples", values.size, least=1, remedy="give one finite number per trial")
     return values
 
 
 def _check_levels(tolerance: float, confidence: float) -> None:
-    number("tolerance", tolerance, above=0, below=1, remedy="give a fraction, not percent")
+    check.number("tolerance", tolerance, above=0, below=1, remedy=check.PERCENT)
     # below one half an order-statistics interval may miss its own estimate
-    number("confidence", confidence, least=0.5, below=1, remedy="give a fraction, not percent")
+    check.number("confidence", confidence, least=0.5, below=1, remedy=check.PERCENT)
 
 
 def _check_member(rule: StopRule) -> None:
-    instance("each rule", rule, StopRule, "give PercentileRule(...) or MeanRule(...)")
+    check.instance("each rule", rule, StopRule, "give PercentileRule(...) or MeanRule(...)")
     if isinstance(rule, AllRules):
         raise TypeError(f"each rule must be a single one, got {rule!r}; list its members instead")
 
 
-def look(rule: StopRule, samples: Array) -> Judgement:
+def judged(rule: StopRule, samples: Array) -> Judgement:
     """Judge every column of the samples."""
     if samples.ndim == 1:
         return rule.judge(samples)

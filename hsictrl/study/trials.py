@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from hsictrl._checks import Array, instance, numbers, whole
+from hsictrl import _checks as check
+from hsictrl._checks import Array
 from hsictrl.study.ensembles import Ensemble
-from hsictrl.study.rules import Judgement, PercentileRule, StopRule, look
+from hsictrl.study.rules import Judgement, PercentileRule, StopRule, judged
 
 Trial = Callable[[np.random.Generator], ArrayLike]
 
@@ -31,22 +32,22 @@ def monte_carlo(
     ----------
     trial : callable
         Takes a `numpy.random.Generator` and returns a number, or one number per quantity, all of which must
-        settle. Picklable if `executor` runs processes. [any unit]
+        settle. Picklable if `executor` runs processes.
     rule : StopRule
-        Says when the estimate has settled. [-]
+        Says when the estimate has settled.
     seed : int
-        Seed of the study. [-]
+        Seed of the study [-].
     executor : concurrent.futures.Executor, optional
-        Runs the trials; in place without one. [-]
+        Runs the trials; in place without one.
     max_trials : int
-        Trials after which an ensemble that has not settled is returned all the same. [-]
+        Trials after which an ensemble that has not settled is returned all the same [-].
     label : str
-        What the progress bar calls the trials; a bar is drawn only if stderr is a terminal. [-]
+        What the progress bar calls the trials; a bar is drawn only if stderr is a terminal.
 
     Returns
     -------
     Ensemble
-        Samples, estimate and interval. [unit of the trial]
+        Samples, estimate and interval [unit of the trial].
 
     Notes
     -----
@@ -54,7 +55,7 @@ def monte_carlo(
     least number, if larger), then each time at a quarter more, at least 50 more. Some luck is left: the
     95 % interval held the true percentile in 93 to 94 % of 3000 studies of each of four distributions.
 
-    Source: Van Nimmen et al. (2017), section 2.3; the schedule of looks is ours.
+    Source: Van Nimmen et al. (2017), section 2.3; the schedule of checkpoints is ours.
 
     Examples
     --------
@@ -66,11 +67,11 @@ def monte_carlo(
     samples: list[Array] = []
     with _progress() as bar:
         task = bar.add_task(label, total=None)
-        for n in looks(rule, max_trials):
+        for n in checkpoints(rule, max_trials):
             for value in _values(trial, seed, range(len(samples), n), executor):
                 samples.append(_alike(value, samples))
                 bar.advance(task)
-            judgement = look(rule, np.array(samples))
+            judgement = judged(rule, np.array(samples))
             if judgement.converged:
                 break
     return Ensemble(
@@ -85,14 +86,14 @@ def trial_rng(seed: int, index: int) -> np.random.Generator:
     Parameters
     ----------
     seed : int
-        Seed of the study. [-]
+        Seed of the study [-].
     index : int
-        Index of the trial, from 0. [-]
+        Index of the trial, from 0 [-].
 
     Returns
     -------
     numpy.random.Generator
-        The generator that `monte_carlo` hands to this trial. [-]
+        The generator that `monte_carlo` hands to this trial.
 
     Examples
     --------
@@ -100,13 +101,31 @@ def trial_rng(seed: int, index: int) -> np.random.Generator:
     >>> bool(trial_rng(3, 17).normal(1.0, 0.1) == ensemble.samples[17])
     True
     """
-    whole("seed", seed, least=0, remedy="give the seed of the study")
-    whole("index", index, least=0, remedy="count trials from 0")
+    check.whole("seed", seed, least=0, remedy="give the seed of the study")
+    check.whole("index", index, least=0, remedy="count trials from 0")
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
 
 
-def looks(rule: StopRule, most: int) -> Iterator[int]:
-    """Numbers of trials at which a rule looks at the samples."""
+def checkpoints(rule: StopRule, most: int) -> Iterator[int]:
+    """Numbers of trials at which a rule looks at the samples of a study.
+
+    Parameters
+    ----------
+    rule : StopRule
+        The rule of the study.
+    most : int
+        Number of trials after which the study ends in any case [-].
+
+    Returns
+    -------
+    iterator of int
+        Rising numbers of trials, the last one `most` [-].
+
+    Examples
+    --------
+    >>> list(checkpoints(PercentileRule(), 300))
+    [100, 150, 200, 250, 300]
+    """
     n = max(100, rule.least_trials)
     while n < most:
         yield n
@@ -132,7 +151,7 @@ def _run(trial: Trial, seed: int, index: int) -> Array:
     except Exception as error:
         cause = f"{type(error).__name__}: {error}"
         raise RuntimeError(f"trial {index} of seed {seed} failed: {cause}; {again}") from error
-    return numbers(f"result of trial {index} of seed {seed}", value, remedy=again)
+    return check.numbers(f"result of trial {index} of seed {seed}", value, remedy=again)
 
 
 def _alike(value: Array, samples: list[Array]) -> Array:
@@ -153,11 +172,11 @@ def _ending(judgement: Judgement, max_trials: int) -> str:
 def _check_study(trial: Trial, rule: StopRule, seed: int, executor: Executor | None, max_trials: int) -> None:
     if not callable(trial):
         raise TypeError(f"trial must be callable, got {trial!r}; give a function of a numpy.random.Generator")
-    instance("rule", rule, StopRule, "give PercentileRule(...), MeanRule(...) or AllRules([...])")
-    whole("seed", seed, least=0, remedy="give any other whole number")
-    whole("max_trials", max_trials, least=1, remedy="allow at least one trial")
+    check.instance("rule", rule, StopRule, "give PercentileRule(...), MeanRule(...) or AllRules([...])")
+    check.whole("seed", seed, least=0, remedy="give 0, 1, 2, …")
+    check.whole("max_trials", max_trials, least=1, remedy="allow at least one trial")
     if executor is not None:
-        instance("executor", executor, Executor, "give one of concurrent.futures, or None to run in place")
+        check.instance("executor", executor, Executor, "give one of concurrent.futures, or None to run in place")
 
 
 def _progress() -> Progress:
