@@ -181,10 +181,48 @@ class Traffic:
         """
         if self._standing is not None:
             return self._standing
+        walkers, places = self._frozen(bridge)
+        return walkers.bodies, places
+
+    def stopped_on(self, bridge: Footbridge) -> tuple[Walkers, Array]:
+        """The walkers who keep stepping where the standing crowd is, for the stationary force model (section 2.4).
+
+        Where a standing crowd was drawn or given, its n places are taken by the last n walkers to arrive; the last
+        places stay empty if there are fewer. Otherwise the walkers on the deck in the middle of the window step
+        where they are then.
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge.
+
+        Returns
+        -------
+        Walkers
+            Those who step in place.
+        array, shape (n, 2)
+            Where they do [m].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> walkers, places = Traffic([walker]).stopped_on(reference_bridge())
+        >>> len(walkers), places
+        (1, array([[25.,  0.]]))
+        """
+        if self._standing is None:
+            return self._frozen(bridge)
+        places, order = self._standing[1], np.argsort(self.walkers.arrival, kind="stable")
+        last = order[max(0, len(order) - len(places)):]
+        return self.walkers.part(last), places[:len(last)]
+
+    def _frozen(self, bridge: Footbridge) -> tuple[Walkers, Array]:
+        """Walkers on the deck in the middle of the window, and where they are."""
         x = self.walkers.position([np.mean(self.observed(bridge))])[:, 0]
         present = (x >= 0) & (x <= bridge.length) & (np.abs(self.walkers.offset) <= bridge.width / 2)
-        places = np.column_stack([x, self.walkers.offset])[present]
-        return self.walkers.bodies.part(present), places
+        return self.walkers.part(present), np.column_stack([x, self.walkers.offset])[present]
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
         return Traffic(walkers, window=self.window, target=target, standing=self._standing)
