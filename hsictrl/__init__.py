@@ -27,8 +27,8 @@ __version__ = "0.1.0"
 __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
     "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode",
-    "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "Shape", "SineShape",
-    "StopRule", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
+    "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "Shape",
+    "SineShape", "StopRule", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
     "comfort_class", "couple", "design_acceleration", "effective", "effective_map", "effective_sensitivity",
     "en1990_limit", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "predict",
     "reference_bridge", "resonant_step_frequency", "study_effective", "trial_rng", "tune", "weidmann_speed",

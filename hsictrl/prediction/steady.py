@@ -56,8 +56,9 @@ def steady_accelerations(system: OccupiedBridge, walkers: Walkers, places: Array
 def _responses(system: OccupiedBridge, rows: Array, force: ForceLines) -> list[ForceLines]:
     """Acceleration at each sensor due to each walker, as lines [m/s²]."""
     modal = np.einsum("kj,kl->jkl", rows, force.coefficients).reshape(system.bridge.n_modes, -1)
-    spectra = system.respond(2j * np.pi * force.frequencies.ravel(), modal)
-    return [replace(force, coefficients=spectrum.reshape(force.coefficients.shape)) for spectrum in spectra]
+    s = np.asarray(2j * np.pi * force.frequencies.ravel(), dtype=np.complex128)
+    return [replace(force, coefficients=spectrum.reshape(force.coefficients.shape))
+            for spectrum in system.respond(s, modal)]
 
 
 def _refuse_resonance(bridge: Footbridge, force: ForceLines) -> None:
@@ -65,4 +66,5 @@ def _refuse_resonance(bridge: Footbridge, force: ForceLines) -> None:
     for mode in bridge.modes:
         if mode.damping == 0 and np.any(np.isclose(force.frequencies, mode.frequency, rtol=IN_TUNE, atol=0)):
             raise ValueError("a steady state needs damping where a harmonic of walking meets a mode, got 0 % and both "
-                             f"at {mode.frequency:.4g} Hz; give the bridge a damping ratio above 0, or predict with 'MF'")
+                             f"at {mode.frequency:.4g} Hz; give the bridge a damping ratio above 0, or take the "
+                             "model 'MF'")

@@ -5,4 +5,6 @@ from hsictrl.walking.model import WalkingForce
 from hsictrl.walking.narrowband import MainHarmonics, ZivanovicForce, kerr_factor
 from hsictrl.walking.periodic import HarmonicForce, YoungForce
 
-__all__ = ["ForceLines", "HarmonicForce", "MainHarmonics", "WalkingForce", "YoungForce", "ZivanovicForce", "kerr_factor"]
+__all__ = [
+    "ForceLines", "HarmonicForce", "MainHarmonics", "WalkingForce", "YoungForce", "ZivanovicForce", "kerr_factor",
+]
