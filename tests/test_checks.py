@@ -216,7 +216,7 @@ def asked(model="MF", bridge=BRIDGE, who=None, **options):
 
 
 PREDICTION = {
-    "model": (ValueError, lambda: asked("FEM"), "model must be one of 'MF', 'PMC'", "'FEM'", "choose one"),
+    "model": (ValueError, lambda: asked("FEM"), "model must be one of 'SF', 'MF', 'MFAM', 'PMC'", "'FEM'", "choose one"),
     "model's case": (ValueError, lambda: asked("mf"), "model must be one of", "'mf'", "choose one"),
     "tuned model": (ValueError, lambda: tune("FEM", BRIDGE, traffic()), "model must be one of", "'FEM'", "choose one"),
     "bridge": (TypeError, lambda: asked(bridge=50.0), "bridge must be a Footbridge", "float", "by its modes"),
@@ -263,7 +263,7 @@ ASSESSMENT = {
     "seed": (ValueError, lambda: assess(BRIDGE, FLOW, seed=-1), "seed must be at least 0", "-1", "whole number"),
     "executor": (TypeError, lambda: assess(BRIDGE, FLOW, executor=4), "must be a Executor", "int",
                  "concurrent.futures"),
-    "model": (ValueError, lambda: PeakTrial(model="SF", bridge=BRIDGE, flow=FLOW), "model must be one of", "'SF'",
+    "model": (ValueError, lambda: PeakTrial(model="FEM", bridge=BRIDGE, flow=FLOW), "model must be one of", "'FEM'",
               "choose"),
     "trial's flow": (TypeError, lambda: PeakTrial(model="MF", bridge=BRIDGE, flow=traffic()), "must be a CrowdFlow",
                      "Traffic",

@@ -204,7 +204,10 @@ def test_places_stay_empty_where_too_few_walk_and_the_remarks_say_so():
     bridge = reference_bridge(frequency=2.0)
     result = predict("SF", bridge, Traffic([walker()], standing=at(10.0, 30.0, 20.0)), timepts=TIMES)
     assert relative(result.response.y, superposed(bridge, (walker(), 10.0))) < 1e-9
-    assert result.remarks == ("only 1 of the 3 standing places are taken, since no more walkers arrive",)
+    few = "only 1 of 3 standing places could be taken, since no more walkers arrive"
+    assert result.remarks == (few,)
+    fast = predict("SF", bridge, Traffic([walker(step_frequency=3.0)], standing=at(10.0, 30.0, 20.0)))
+    assert fast.remarks == ("the mean step frequency 3.00 Hz lies outside 1.0–2.5 Hz, where people walk", few)
 
 
 @pytest.mark.parametrize("standing", [at(10.0), at()])

@@ -181,7 +181,7 @@ def _steady(
     walkers, asked = stopped.periodic(), len(traffic.standing_on(system.bridge)[0])
     grid = _grid(window, times, walkers, system.bridge, walkers.lines())
     few = () if len(walkers) == asked else (
-        f"only {len(walkers)} of the {asked} standing places are taken, since no more walkers arrive",)
+        f"only {len(walkers)} of {asked} standing places could be taken, since no more walkers arrive",)
     response = steady_accelerations(system, walkers, places, grid)
     return _prediction(system, grid.times, response, traffic.remarks + few)
 
