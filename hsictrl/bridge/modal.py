@@ -8,6 +8,7 @@ from typing import Any, final
 
 import control as ct
 import numpy as np
+from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -191,6 +192,26 @@ class Footbridge:
                              "count modes from 0, or describe the bridge with more of them")
         return self.modes[index]
 
+    def carries(self, positions: Any) -> NDArray[np.bool_]:
+        """Which places lie on the deck.
+
+        Parameters
+        ----------
+        positions : array_like, shape (n,) or (n, 2)
+            Places x, or (x, y) [m].
+
+        Returns
+        -------
+        array of bool, shape (n,)
+
+        Examples
+        --------
+        >>> reference_bridge(frequency=2.0).carries([-1.0, 25.0])
+        array([False,  True])
+        """
+        x, y = check.points("positions", positions).T
+        return np.asarray((x >= 0) & (x <= self.length) & (np.abs(y) <= self.width / 2))
+
     def on_deck(self, name: str, positions: Any) -> Array:
         """Places on the deck as (n, 2) coordinates; refuse any that lie off it.
 
@@ -212,9 +233,9 @@ class Footbridge:
         (2, 2)
         """
         places = check.points(name, positions)
-        off = (places[:, 0] < 0) | (places[:, 0] > self.length) | (np.abs(places[:, 1]) > self.width / 2)
-        if np.any(off):
-            i = int(np.argmax(off))
+        carried = self.carries(places)
+        if not np.all(carried):
+            i = int(np.argmin(carried))
             raise ValueError(f"{name} must lie on the deck, 0 ≤ x ≤ {self.length:g} and |y| ≤ {self.width / 2:g} m, "
                              f"got {name}[{i}] = ({places[i, 0]:g}, {places[i, 1]:g}); move it, or leave it out")
         return places
@@ -242,9 +263,9 @@ class Footbridge:
         """
         x, y = check.points("positions", positions).T
         vertical = check.directions(direction) == "vertical"
-        across = np.abs(y) <= self.width / 2
+        carried = self.carries(positions)
         return np.column_stack([
-            across * np.where(vertical, mode.shape(x, y, "vertical"), mode.shape(x, y, "lateral"))
+            carried * np.where(vertical, mode.shape(x, y, "vertical"), mode.shape(x, y, "lateral"))
             / np.sqrt(mode.modal_mass) for mode in self.modes])
 
     def with_crowd_mass(self, mass: float) -> Footbridge:

@@ -3,6 +3,9 @@
 from hsictrl.coupling.condensation import CondensedCrowd
 from hsictrl.coupling.interconnection import interconnect
 from hsictrl.coupling.measurement import OccupiedMeasurement
+from hsictrl.coupling.moving import MovingCrowd, moving_crowd
 from hsictrl.coupling.occupied import OccupiedBridge, couple
 
-__all__ = ["CondensedCrowd", "OccupiedBridge", "OccupiedMeasurement", "couple", "interconnect"]
+__all__ = [
+    "CondensedCrowd", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "couple", "interconnect", "moving_crowd",
+]

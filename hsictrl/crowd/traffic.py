@@ -220,9 +220,9 @@ class Traffic:
 
     def _frozen(self, bridge: Footbridge) -> tuple[Walkers, Array]:
         """Walkers on the deck in the middle of the window, and where they are."""
-        x = self.walkers.position([np.mean(self.observed(bridge))])[:, 0]
-        present = (x >= 0) & (x <= bridge.length) & (np.abs(self.walkers.offset) <= bridge.width / 2)
-        return self.walkers.part(present), np.column_stack([x, self.walkers.offset])[present]
+        places = self.walkers.places(float(np.mean(self.observed(bridge))))
+        present = bridge.carries(places)
+        return self.walkers.part(present), places[present]
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
         return Traffic(walkers, window=self.window, target=target, standing=self._standing)

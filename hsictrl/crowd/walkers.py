@@ -267,6 +267,28 @@ class Walkers:
         times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
         return self.speed[:, None] * np.subtract.outer(times, self.arrival).T
 
+    def places(self, time: float) -> Array:
+        """Where the walkers are at an instant; off the deck too.
+
+        Parameters
+        ----------
+        time : float
+            The instant [s].
+
+        Returns
+        -------
+        array, shape (n, 2)
+            Positions x and y [m].
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, offset=0.5)
+        >>> Walkers.of([walker]).places(4.0)
+        array([[5. , 0.5]])
+        """
+        return np.column_stack([self.position([time])[:, 0], self.offset])
+
     def lines(self) -> list[tuple[Indices, ForceLines]]:
         """Walking forces of all walkers, model by model.
 

@@ -1,0 +1,197 @@
+"""The moving crowd: a bridge whose people walk, as a system that varies in time (section 2.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, final
+
+import control as ct
+import numpy as np
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.bridge import Footbridge
+from hsictrl.coupling.occupied import OccupiedBridge, couple
+from hsictrl.crowd import Traffic
+
+
+def moving_crowd(bridge: Footbridge, traffic: Traffic) -> MovingCrowd:
+    """Let people walk over a bridge: the time-varying system of (A.7), by its structure.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    traffic : Traffic
+        Who walks over it.
+
+    Returns
+    -------
+    MovingCrowd
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.crowd import Walker
+    >>> from hsictrl.walking import HarmonicForce
+    >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+    >>> print(moving_crowd(reference_bridge(), Traffic([walker])))
+    1 walker at 2.00 Hz on footbridge 50 m × 3 m, 50000 kg
+      mode 0: 2.000 Hz, 0.50 %, 25000 kg
+    """
+    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+    check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
+    return MovingCrowd(bridge=bridge, traffic=traffic)
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MovingCrowd:
+    """A bridge with people who walk over it. Made by `moving_crowd`.
+
+    Velocities and accelerations of a contact point are partial derivatives in time, as in (A.1).
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    traffic : Traffic
+        Who walks over it.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.crowd import Walker
+    >>> from hsictrl.walking import HarmonicForce
+    >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+    >>> crowd = moving_crowd(reference_bridge(), Traffic([walker]))
+    >>> crowd.rows(20.0).round(6)      # 1/√25 t at midspan
+    array([[0.006325]])
+    """
+
+    bridge: Footbridge
+    traffic: Traffic
+
+    def __str__(self) -> str:
+        return f"{self.traffic} on {self.bridge}"
+
+    def rows(self, time: float) -> Array:
+        """Participation of every walker in the modes at an instant, zero for those off the deck.
+
+        Parameters
+        ----------
+        time : float
+            The instant [s].
+
+        Returns
+        -------
+        array, shape (n, n_m)
+            Rows of Φ [1/√kg].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.crowd import Walker
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> moving_crowd(reference_bridge(), Traffic([walker])).rows(-1.0)
+        array([[0.]])
+        """
+        return self.bridge.participation(self.traffic.walkers.places(time), self.traffic.walkers.bodies.direction)
+
+    def at(self, time: float, *, force_at: Any = None, sense_at: Any = None) -> OccupiedBridge:
+        """The system of one instant, as if everybody on the deck stood still.
+
+        Parameters
+        ----------
+        time : float
+            The instant [s].
+        force_at, sense_at : array_like, optional
+            As in `couple` [m].
+
+        Returns
+        -------
+        OccupiedBridge
+            Its `effective` properties are the instantaneous ones.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.crowd import Walker
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> moving_crowd(reference_bridge(), Traffic([walker])).at(20.0).positions
+        array([[25.,  0.]])
+        """
+        time = check.number("time", time, remedy="give s")
+        walkers, places = self.traffic.walkers, self.traffic.walkers.places(time)
+        present = self.bridge.carries(places)
+        system = couple(self.bridge, walkers.bodies.part(present), places[present],
+                        force_at=force_at, sense_at=sense_at, name="instant")
+        assert isinstance(system, OccupiedBridge)
+        return system
+
+    def to_nlsys(self, *, force_at: Any = None, sense_at: Any = None, name: str = "moving") -> ct.NonlinearIOSystem:
+        """Give the system to the host, walking forces included, for `control.input_output_response`.
+
+        Everybody in the traffic has two states, at rest before they step on.
+
+        Parameters
+        ----------
+        force_at, sense_at : array_like, optional
+            As in `couple`: where further forces act, and where accelerations are read [m].
+        name : str
+            Name of the system.
+
+        Returns
+        -------
+        control.NonlinearIOSystem
+            Inputs F[i] [N], outputs a[i] [m/s²], states z[j], u[k], dz[j], du[k] as in (A.7).
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.crowd import Walker
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> system = moving_crowd(reference_bridge(), Traffic([walker])).to_nlsys()
+        >>> record = ct.input_output_response(system, np.linspace(0, 10, 501), 0)
+        >>> bool(np.abs(record.outputs).max() > 0)
+        True
+        """
+        empty = couple(self.bridge, force_at=force_at, sense_at=sense_at)
+        assert isinstance(empty, OccupiedBridge)
+        drive, sense = (self.bridge.participation(points) for points in (empty.force_at, empty.sense_at))
+        rates, n_m, n = _rates(self, drive), self.bridge.n_modes, len(self.traffic.walkers)
+        sizes = {"z": n_m, "u": n, "dz": n_m, "du": n}
+        return ct.nlsys(
+            lambda t, x, u, params: np.concatenate([x[n_m + n:], rates(t, x, u)]),
+            lambda t, x, u, params: sense @ rates(t, x, u)[:n_m],
+            inputs=empty.input_labels, outputs=empty.output_labels, name=name,
+            states=[f"{part}[{i}]" for part, size in sizes.items() for i in range(size)])
+
+
+def _rates(crowd: MovingCrowd, drive: Array) -> Callable[[float, Array, Array], Array]:
+    """Accelerations of modes and bodies (A.3, A.4) as a function of time, state and further forces."""
+    bridge, people, lines = crowd.bridge, crowd.traffic.walkers.bodies, crowd.traffic.walkers.lines()
+    n_m, n = bridge.n_modes, len(people)
+    gamma, square = 2 * bridge.damping * bridge.omega, bridge.omega**2
+
+    def rates(t: float, x: Array, further: Array) -> Array:
+        z, u, dz, du = np.split(x, [n_m, n_m + n, 2 * n_m + n])
+        rows = crowd.rows(t)
+        contact = people.damping_coefficient * (du - rows @ dz) + people.stiffness * (u - rows @ z)
+        modal = rows.T @ (contact + _walking_forces(lines, n, t)) + drive.T @ np.atleast_1d(further)
+        mass = np.eye(n_m) + rows.T * people.unsprung_mass @ rows
+        return np.concatenate([np.linalg.solve(mass, modal - gamma * dz - square * z), -contact / people.sprung_mass])
+
+    return rates
+
+
+def _walking_forces(lines: Any, n: int, time: float) -> Array:
+    """Force of every walker on rigid ground at an instant, shape (n,) [N]."""
+    forces = np.zeros(n)
+    for who, force in lines:
+        forces[who] = force.at([time])[:, 0]
+    return forces
