@@ -216,7 +216,7 @@ def asked(model="MF", bridge=BRIDGE, who=None, **options):
 
 
 PREDICTION = {
-    "model": (ValueError, lambda: asked("FEM"), "model must be one of 'SF', 'MF', 'MFAM', 'PMC'", "'FEM'", "choose one"),
+    "model": (ValueError, lambda: asked("FEM"), "model must be one of 'SF', 'MF', 'MFAM', 'PMC'", "'FEM'", "choose"),
     "model's case": (ValueError, lambda: asked("mf"), "model must be one of", "'mf'", "choose one"),
     "tuned model": (ValueError, lambda: tune("FEM", BRIDGE, traffic()), "model must be one of", "'FEM'", "choose one"),
     "bridge": (TypeError, lambda: asked(bridge=50.0), "bridge must be a Footbridge", "float", "by its modes"),
