@@ -21,3 +21,13 @@ def truncated_normal(mean: Any, spread: Any, draws: Array, *, high: float = np.i
     above_zero, above_high = ndtr(mean / spread), ndtr((mean - high) / spread)
     upper = 1 - np.maximum(draws, SMALLEST_DRAW)
     return np.asarray(mean - spread * ndtri(above_high + (above_zero - above_high) * upper))
+
+
+def retuned(values: Array, mean: float, new_mean: float, spread: float) -> Array:
+    """The same quantiles of a normal truncated to (0, ∞) after its mean has moved; without spread, a shift."""
+    if spread == 0:
+        return np.asarray(new_mean + (values - mean))
+    z, kept = (values - mean) / spread, ndtr(new_mean / spread) / ndtr(mean / spread)
+    # each half from its own tail, where probabilities keep their digits
+    below = ndtri((ndtr(z) - ndtr(-mean / spread)) * kept + ndtr(-new_mean / spread))
+    return np.asarray(new_mean + spread * np.where(z < 0, below, -ndtri(ndtr(-z) * kept)))

@@ -30,7 +30,7 @@ class PeakTrial:
     Parameters
     ----------
     model : str
-        "MF" or "PMC".
+        "SF", "MF", "MFAM" or "PMC".
     bridge : Footbridge
         The empty bridge.
     flow : CrowdFlow

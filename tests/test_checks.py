@@ -222,7 +222,7 @@ def asked(model="MF", bridge=BRIDGE, who=None, **options):
 
 
 PREDICTION = {
-    "model": (ValueError, lambda: asked("FEM"), "model must be one of 'MF', 'PMC'", "'FEM'", "choose one"),
+    "model": (ValueError, lambda: asked("FEM"), "model must be one of 'SF', 'MF', 'MFAM', 'PMC'", "'FEM'", "choose"),
     "model's case": (ValueError, lambda: asked("mf"), "model must be one of", "'mf'", "choose one"),
     "tuned model": (ValueError, lambda: tune("FEM", BRIDGE, traffic()), "model must be one of", "'FEM'", "choose one"),
     "bridge": (TypeError, lambda: asked(bridge=50.0), "bridge must be of type Footbridge", "float", "by its modes"),
@@ -270,7 +270,7 @@ ASSESSMENT = {
     "seed": (ValueError, lambda: assess(BRIDGE, FLOW, seed=-1), "seed must be at least 0", "-1", "give 0, 1"),
     "executor": (TypeError, lambda: assess(BRIDGE, FLOW, executor=4), "must be of type Executor", "int",
                  "concurrent.futures"),
-    "model": (ValueError, lambda: PeakTrial(model="SF", bridge=BRIDGE, flow=FLOW), "model must be one of", "'SF'",
+    "model": (ValueError, lambda: PeakTrial(model="FEM", bridge=BRIDGE, flow=FLOW), "model must be one of", "'FEM'",
               "choose"),
     "trial's flow": (TypeError, lambda: PeakTrial(model="MF", bridge=BRIDGE, flow=traffic()),
                      "must be of type CrowdFlow",

@@ -186,11 +186,23 @@ def test_tuned_walkers_keep_all_but_their_step(mean):
     traffic = drawn(CrowdFlow(density=0.2), force=ZivanovicForce())
     tuned = traffic.tuned(mean)
     assert tuned.target == mean
-    np.testing.assert_allclose(tuned.walkers.step_frequency - mean, traffic.walkers.step_frequency - 2.0, atol=1e-14)
+    laws = [truncnorm(-m / 0.175, np.inf, loc=m, scale=0.175) for m in (2.0, mean)]     # the same quantiles
+    expected = laws[1].isf(laws[0].sf(traffic.walkers.step_frequency))
+    np.testing.assert_allclose(tuned.walkers.step_frequency, expected, atol=1e-12)
     np.testing.assert_array_equal(np.delete(columns(tuned), 2, axis=1), np.delete(columns(traffic), 2, axis=1))
     assert np.shares_memory(tuned.walkers.draws[0], traffic.walkers.draws[0])
     np.testing.assert_array_equal(tuned.walkers.draws[0], traffic.walkers.draws[0])
     assert tuned.standing_on(BRIDGE)[0] is traffic.standing_on(BRIDGE)[0]
+
+
+def test_nobody_steps_backwards_however_low_the_tuning():
+    """Far down the law N(0.3, 0.175) loses a twentieth to its truncation at zero; quantiles keep their order."""
+    traffic = drawn(CrowdFlow(density=0.8))
+    low = traffic.tuned(0.3).walkers.step_frequency
+    assert low.min() > 0
+    np.testing.assert_array_equal(np.argsort(low), np.argsort(traffic.walkers.step_frequency))
+    law = truncnorm(-0.3 / 0.175, np.inf, loc=0.3, scale=0.175)
+    assert kstest(low, law.cdf).pvalue > 0.01
 
 
 def test_tuning_is_the_draw_at_another_frequency():

@@ -307,13 +307,57 @@ def test_warm_up_by_hand_equals_the_default_of_the_design(model):
 
 def test_records_do_not_come_round():
     bridge = Footbridge.simply_supported(length=200.0, width=3.0, mass=4 * MASS, frequency=2.0, damping=0.005)
-    traffic = CrowdFlow(density=1.0).sample(bridge, rng=np.random.default_rng(4))     # 2 Hz: the lines repeat at 50 s
-    end = traffic.window[1]
+    drawn = CrowdFlow(density=1.0).sample(bridge, rng=np.random.default_rng(4))     # 2 Hz: the lines repeat at 50 s
+    end = drawn.window[1]
+    traffic = Traffic(drawn.walkers, window=drawn.window, target=drawn.target)      # by hand: seen beyond its window
     times = np.arange(0.0, end, 0.02)
     usual, longer = (accelerations("MF", bridge, traffic, timepts=t)[0] for t in (times, np.arange(0, 3 * end, 0.02)))
     assert relative(longer[:len(times)], usual) < 1e-6         # whatever the period of the transform
     period = round(50.0 / 0.02)
     assert np.max(np.abs(usual[period:] - usual[:-period])) > 0.5 * np.max(np.abs(usual))
+
+
+def test_drawn_traffic_is_not_seen_where_it_was_not_drawn():
+    traffic = CrowdFlow(density=0.5).sample(reference_bridge(), rng=np.random.default_rng(4))
+    end = traffic.window[1]
+    for times in (np.linspace(0.0, 2 * end, 101), np.linspace(-1.0, end, 101)):
+        with pytest.raises(ValueError, match=r"timepts must lie in the window of the traffic, 0 to .* stay inside"):
+            predict("MF", reference_bridge(), traffic, timepts=times)
+    with pytest.raises(ValueError, match=r"at most the 79.5775 s for which .* drawn, got 100000; leave it out"):
+        predict("MF", reference_bridge(), traffic, warm_up=1e5)
+
+
+def test_a_window_leaves_walkers_made_by_hand_in_place():
+    """An undamped bridge rings on: the window after a crossing shows what the record without one shows."""
+    bridge, one = reference_bridge(damping=0.0), Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+    times = np.linspace(100.0, 140.0, 4001)
+    alone = predict("MF", bridge, Traffic([one]), timepts=times).response.outputs
+    windowed = predict("MF", bridge, Traffic([one], window=(100.0, 140.0)), timepts=times).response.outputs
+    assert np.max(np.abs(alone)) > 1.0
+    np.testing.assert_allclose(windowed, alone, atol=1e-6 * np.max(np.abs(alone)))
+
+
+@pytest.mark.parametrize("damping", [[0.005, 0.0], [0.005, 0.8]])
+def test_a_mode_without_a_peak_does_not_stop_pmc(damping):
+    """Mode 2 has no peak to read, or a node where the walker stands; against the host."""
+    bridge = Footbridge.simply_supported(length=50.0, width=3.0, mass=MASS, frequency=2.0, damping=damping, n_modes=2)
+    one = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+    times = np.linspace(0.0, 40.0, 8001)
+    found = predict("PMC", bridge, Traffic([one]), timepts=times)
+    modal = [mode.shape(1.25 * times) * 280.0 * np.cos(4 * np.pi * times) for mode in bridge.modes]
+    points = np.array([12.5, 25.0])                 # forces there that make the same modal forces
+    shapes = np.array([mode.shape(points) for mode in bridge.modes])
+    system = couple(bridge, *Traffic([one]).standing_on(bridge), force_at=points)
+    host = ct.forced_response(system, times, np.linalg.solve(shapes, modal)).outputs
+    assert np.max(np.abs(found.response.outputs - host.ravel())) < 1e-3 * np.max(np.abs(host))
+
+
+def test_a_lateral_bridge_is_refused():
+    sway = Mode(frequency=1.0, damping=0.01, modal_mass=25e3, shape=SineShape(50.0, direction="lateral"))
+    bridge = Footbridge(modes=[sway], length=50.0, width=3.0, mass=50e3)
+    one = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+    with pytest.raises(ValueError, match=r"the first mode must move vertically, got a shape .*; walking forces"):
+        predict("MF", bridge, Traffic([one]))
 
 
 # tuning

@@ -10,6 +10,7 @@ from scipy.stats import kstest, truncnorm
 from hsictrl.walking import (
     ForceLines,
     HarmonicForce,
+    MainHarmonics,
     WalkingForce,
     YoungForce,
     ZivanovicForce,
@@ -25,8 +26,9 @@ MODELS = [
     YoungForce(values="design"),
     ZivanovicForce(),
     ZivanovicForce(spacing=0.05, scaling="variance"),
+    MainHarmonics(ZivanovicForce()),
 ]
-ERRORS = [1e-10, 2e-10, 2e-10, 2e-5, 2e-5]  # of the grid, relative to the peak
+ERRORS = [1e-10, 2e-10, 2e-10, 2e-5, 2e-5, 1e-9]  # of the grid, relative to the peak
 
 
 def crowd(model: WalkingForce, n: int = 20, seed: int = 1) -> ForceLines:
@@ -299,6 +301,32 @@ def test_zivanovic_phases_follow_the_draws_after_the_fifth():
     np.testing.assert_allclose(angles, 2 * np.pi * (draws[:, 5:] - 0.5), atol=1e-9)
 
 
+@pytest.mark.parametrize(("spacing", "scaling"), [(0.01, "published"), (0.05, "variance"), (0.25, "variance")])
+def test_main_harmonics_have_the_factors_and_phases_of_the_narrow_band_force(spacing, scaling):
+    model, draws = ZivanovicForce(spacing=spacing, scaling=scaling), np.random.default_rng(7).random((4, 505))
+    draws, W, f_s = draws[:, :model.n_draws], np.array([600.0, 700.0, 800.0, 900.0]), np.array([1.6, 1.8, 2.0, 2.2])
+    narrow, force = (m.lines(f_s, W, draws) for m in (model, model.periodic()))
+    mean, std = np.array([1.0, 0.07, 0.05, 0.05, 0.03]), np.array([0.16, 0.03, 0.02, 0.02, 0.015])
+    factors = truncnorm.ppf(draws[:, :5], -mean / std, np.inf, loc=mean, scale=std)
+    factors[:, 0] *= -0.2649 * f_s**3 + 1.3206 * f_s**2 - 1.7597 * f_s + 0.7613
+    np.testing.assert_allclose(abs(force.coefficients), W[:, None] * factors, rtol=1e-9)
+    np.testing.assert_allclose(force.frequencies, np.outer(f_s, [1, 2, 3, 4, 5]), rtol=1e-15)
+    for i in range(5):     # the line of the narrow band at the same frequency
+        centre = np.argmin(abs(narrow.frequencies[0] - (i + 1) * f_s[0]))
+        np.testing.assert_allclose(narrow.frequencies[:, centre], (i + 1) * f_s, rtol=1e-12)
+        np.testing.assert_allclose(np.angle(force.coefficients[:, i]), np.angle(narrow.coefficients[:, centre]))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_periodic_force_of_the_same_draws_repeats_with_every_step(model):
+    periodic = model.periodic()
+    assert periodic.n_draws == model.n_draws
+    assert periodic.periodic() == periodic
+    times = np.arange(0.0, 0.5, 0.01)
+    force = one(periodic, 2.0)
+    np.testing.assert_allclose(force.at(times), force.at(times + 7 / 2.0), rtol=0, atol=1e-9)
+
+
 # every model
 
 @pytest.mark.parametrize("model", MODELS)
@@ -347,6 +375,7 @@ def test_the_interface_cannot_be_instantiated():
     (lambda: ZivanovicForce(spacing=0.5), r"spacing must lie in \(0, 0.25\], got 0.5"),
     (lambda: ZivanovicForce(spacing=0.005), "must be 0.01 .* got 0.005; give scaling='variance'"),
     (lambda: ZivanovicForce(scaling="none"), "scaling must be one of 'published', 'variance'"),
+    (lambda: MainHarmonics(YoungForce()), "narrow_band must be of type ZivanovicForce, got YoungForce; use Ziva"),
     (lambda: one(YoungForce(), draw=1.0), r"draws\[0, 0\] must lie in \[0, 1\), got 1; draw"),
     (lambda: one(YoungForce(), draw=-0.1), r"draws\[0, 0\] must lie in \[0, 1\), got -0.1"),
     (lambda: one(YoungForce(), 0.0), r"step_frequency\[0\] must be above 0, got 0"),

@@ -273,7 +273,7 @@ class CrowdFlow:
             speed=np.full(n, self.speed_on(bridge)), arrival=latest_first,
             offset=(across.random(n) - 0.5) * bridge.width)
         return Traffic(walkers.part(slice(None, None, -1)), window=(0.0, crossing), target=mean,
-                       standing=self.crowd(bridge, standing), drawn_from=earliest)
+                       standing=self.crowd(bridge, standing), spread=spread, drawn_from=earliest)
 
     def _step_rule_on(self, bridge: Footbridge) -> tuple[float, float]:
         """Mean and standard deviation of the step frequencies [Hz]."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._draws import retuned
 from hsictrl.bridge import Footbridge
 from hsictrl.crowd.walkers import Walker, Walkers
 from hsictrl.pedestrian import Crowd
@@ -34,6 +35,8 @@ class Traffic:
     standing : (Crowd, array of shape (n, 2)), optional
         Bodies and places of the crowd that stands for the moving one in a pseudo-moving crowd; the
         walkers on the deck in the middle of the window if not given [m].
+    spread : float
+        Standard deviation of the normal from which step frequencies were drawn, truncated at zero [Hz].
     drawn_from : float, optional
         Time from which arrivals were drawn; nothing is left out of traffic made by hand [s].
     rng : numpy.random.Generator, optional
@@ -52,6 +55,7 @@ class Traffic:
     window: tuple[float, float] | None = None
     target: float = None  # type: ignore[assignment]
     standing: tuple[Crowd, Array] | None = None
+    spread: float = 0.0
     drawn_from: float | None = None
     rng: InitVar[np.random.Generator | None] = None
 
@@ -64,6 +68,7 @@ class Traffic:
         store(self, "target", check.number("target", target, above=0, remedy="give Hz"))
         store(self, "window", None if self.window is None else _window(self.window))
         store(self, "standing", None if self.standing is None else _standing(self.standing))
+        store(self, "spread", check.number("spread", self.spread, least=0, remedy="give Hz, 0 for none"))
         if self.drawn_from is not None:
             store(self, "drawn_from", check.number("drawn_from", self.drawn_from, remedy="give s"))
 
@@ -104,7 +109,7 @@ class Traffic:
         array([1.9])
         """
         mean = check.number("step_frequency", step_frequency, above=0, remedy="give the mean step frequency in Hz")
-        moved = mean + (self.walkers.step_frequency - self.target)
+        moved = retuned(self.walkers.step_frequency, self.target, mean, self.spread)
         if np.any(moved <= 0):
             k = int(np.argmin(moved))
             raise ValueError(f"every step frequency must be above 0, got {moved[k]:.3g} Hz for walker {k} tuned about "
@@ -188,9 +193,48 @@ class Traffic:
         """
         if self.standing is not None:
             return self.standing
+        walkers, places = self._frozen(bridge)
+        return walkers.bodies, places
+
+    def stopped_on(self, bridge: Footbridge) -> tuple[Walkers, Array]:
+        """The walkers who keep stepping where the standing crowd is, for the stationary force model (section 2.4).
+
+        Where a standing crowd was drawn or given, its n places are taken by the last n walkers to arrive; the last
+        places stay empty if there are fewer. Otherwise the walkers on the deck in the middle of the window step
+        where they are then.
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge.
+
+        Returns
+        -------
+        Walkers
+            Those who step in place.
+        array, shape (n, 2)
+            Where they do [m].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> walkers, places = Traffic([walker]).stopped_on(reference_bridge())
+        >>> len(walkers), places
+        (1, array([[25.,  0.]]))
+        """
+        if self.standing is None:
+            return self._frozen(bridge)
+        places, order = self.standing[1], np.argsort(self.walkers.arrival, kind="stable")
+        last = order[max(0, len(order) - len(places)):]
+        return self.walkers.part(last), places[:len(last)]
+
+    def _frozen(self, bridge: Footbridge) -> tuple[Walkers, Array]:
+        """Walkers on the deck in the middle of the window, and where they are."""
         places = self.walkers.places(float(np.mean(self.observed(bridge))))
         present = bridge.carries(places)
-        return self.walkers.bodies.part(present), places[present]
+        return self.walkers.part(present), places[present]
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
         return replace(self, walkers=walkers, target=target, rng=None)

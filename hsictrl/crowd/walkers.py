@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, final
 
 import control as ct
@@ -236,8 +236,24 @@ class Walkers:
         >>> Walkers.of([walker]).at_step_frequency(np.array([1.9])).step_frequency
         array([1.9])
         """
-        own = {name: getattr(self, name) for name in self.__slots__}
-        return Walkers(**own | {"step_frequency": step_frequency})
+        return replace(self, step_frequency=step_frequency)
+
+    def periodic(self) -> Walkers:
+        """The same walkers without intra-person variability, see `WalkingForce.periodic`.
+
+        Returns
+        -------
+        Walkers
+
+        Examples
+        --------
+        >>> from hsictrl.walking import ZivanovicForce
+        >>> walker = Walker(force=ZivanovicForce(), step_frequency=2.0, speed=1.25)
+        >>> [(who, force)] = Walkers.of([walker], rng=np.random.default_rng(1)).periodic().lines()
+        >>> force.frequencies
+        array([[ 2.,  4.,  6.,  8., 10.]])
+        """
+        return replace(self, forces=tuple(force.periodic() for force in self.forces))
 
     def position(self, times: Any) -> Array:
         """Where the walkers are along the line of the deck: x = v(t − t_a); off the deck too.

@@ -1,4 +1,4 @@
-"""The time-invariant models of section 2.4: moving forces, without and with a standing crowd."""
+"""The time-invariant models of section 2.4: recipes that differ in the system, or in whether the forces move."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import OccupiedBridge, couple
-from hsictrl.crowd import Traffic, resonant_step_frequency
+from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency
 from hsictrl.crowd.flow import settling_time
 from hsictrl.prediction.forces import Lines, modal_force
 from hsictrl.prediction.grid import Grid, evenly_spaced
 from hsictrl.prediction.spectral import accelerations
+from hsictrl.prediction.steady import steady_accelerations
 from hsictrl.resonance import EffectiveProperties, effective
 
-MODELS = ("MF", "PMC")
-Resonances = list[EffectiveProperties]
+MODELS = ("SF", "MF", "MFAM", "PMC")
+Resonances = list[EffectiveProperties | None]
 
 
 @final
@@ -35,7 +36,8 @@ class Prediction:
     response : control.TimeResponseData
         Acceleration at the antinode of the first mode, or at `sense_at`, over the observed window [m/s², s].
     system : OccupiedBridge
-        The time-invariant system that responds: the empty bridge for MF, the occupied one for PMC.
+        The time-invariant system that responds: the empty bridge for SF and MF, the one that carries the
+        crowd's mass for MFAM, the occupied one for PMC.
     remarks : tuple of str
         What a reader of the numbers should know.
 
@@ -69,14 +71,17 @@ def predict(
 ) -> Prediction:
     """Predict the acceleration under traffic; step frequencies stay as they are (see `tune`).
 
-    Both models are time-invariant systems under forces that move. They are solved in the frequency
-    domain: the modal forces are sampled, and divided by the condensed dynamic stiffness. "MF" takes
-    the empty bridge (eq. 12), "PMC" the bridge with the crowd that stands for the moving one (eq. 11).
+    All models are time-invariant systems. Three of them stand under forces that move, and are solved in the
+    frequency domain: the modal forces are sampled, and divided by the condensed dynamic stiffness. "MF" takes
+    the empty bridge (eq. 12); "MFAM" the bridge loaded evenly with the mass of the standing crowd, its damping
+    ratios and shapes kept (`Footbridge.with_crowd_mass`); "PMC" the bridge with that crowd on it (eq. 11).
+    "SF" is the steady state of the empty bridge under walkers who step in place without intra-person
+    variability (`Traffic.stopped_on`, `WalkingForce.periodic`).
 
     Parameters
     ----------
-    model : {"MF", "PMC"}
-        Moving force model, or pseudo-moving crowd model.
+    model : {"SF", "MF", "MFAM", "PMC"}
+        Stationary force, moving force, moving force with added mass, or pseudo-moving crowd model.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
@@ -88,7 +93,8 @@ def predict(
     sense_at : array_like, shape (p,) or (p, 2), optional
         Where accelerations are read; at the first mode's antinode if not given [m].
     warm_up : float, optional
-        Time between a full deck and the window; max(T, 5/(ξω)) by the model's own damping if not given [s].
+        Time between a full deck and the window; max(T, 5/(ξω)) by the model's own damping if not given;
+        the steady state of "SF" has none [s].
 
     Returns
     -------
@@ -100,9 +106,12 @@ def predict(
     >>> from hsictrl.crowd import CrowdFlow
     >>> bridge = reference_bridge(frequency=2.0)
     >>> traffic = CrowdFlow(density=1.0).sample(bridge, rng=np.random.default_rng(1))
-    >>> without, within = predict("MF", bridge, traffic), predict("PMC", bridge, tune("PMC", bridge, traffic))
-    >>> within.peak_acceleration < without.peak_acceleration
-    True
+    >>> for model in MODELS:
+    ...     print(predict(model, bridge, tune(model, bridge, traffic)))
+    SF: 11.701 m/s²
+    MF: 6.792 m/s²
+    MFAM: 3.941 m/s²
+    PMC: 1.625 m/s²
     """
     system = _system(model, bridge, traffic, sense_at)
     return _predicted(system, _resonances(system), traffic, timepts, warm_up)
@@ -113,7 +122,7 @@ def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Predictio
 
     Parameters
     ----------
-    model : {"MF", "PMC"}
+    model : {"SF", "MF", "MFAM", "PMC"}
         As in `predict`.
     bridge : Footbridge
         The empty bridge.
@@ -137,23 +146,49 @@ def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Predictio
     """
     system = _system(model, bridge, traffic, None)
     found = _resonances(system)
-    return _predicted(system, found, _tuned(traffic, bridge, found), None, None)
+    return _predicted(system, found, _tuned(traffic, system, found), None, None)
 
 
 def _predicted(
     system: OccupiedBridge, found: Resonances, traffic: Traffic, timepts: Any, warm_up: float | None,
 ) -> Prediction:
     """Response of a system whose resonances are known."""
-    bridge, window = system.bridge, traffic.observed(system.bridge)
+    window = traffic.observed(system.bridge)
+    times = None if timepts is None else _within(traffic, window, evenly_spaced(timepts))
     if warm_up is not None:
         check.number("warm_up", warm_up, least=0, remedy="give s")
+    if system.name == "SF":
+        return _steady(system, traffic, window, times)
     decay = _slowest_decay(system, found)
-    traffic = _relevant(traffic, bridge, decay, window, warm_up)
+    return _moving(system, _relevant(traffic, system.bridge, decay, window, warm_up), window, times, decay)
+
+
+def _moving(
+    system: OccupiedBridge, traffic: Traffic, window: tuple[float, float], times: Array | None, decay: float,
+) -> Prediction:
+    """Moving forces, in the frequency domain."""
     lines = traffic.walkers.lines()
-    grid = _grid(window, None if timepts is None else evenly_spaced(timepts), traffic, bridge, lines)
-    response = accelerations(system, modal_force(bridge, traffic.walkers, lines, grid), grid, decay)
-    return Prediction(model=system.name, system=system, remarks=traffic.remarks, response=ct.TimeResponseData(
-        grid.times, response, output_labels=system.output_labels, issiso=len(response) == 1,
+    grid = _grid(window, times, traffic.walkers, system.bridge, lines)
+    response = accelerations(system, modal_force(system.bridge, traffic.walkers, lines, grid), grid, decay)
+    return _prediction(system, grid.times, response, traffic.remarks)
+
+
+def _steady(
+    system: OccupiedBridge, traffic: Traffic, window: tuple[float, float], times: Array | None,
+) -> Prediction:
+    """Periodic forces in place, line by line."""
+    stopped, places = traffic.stopped_on(system.bridge)
+    walkers, asked = stopped.periodic(), len(traffic.standing_on(system.bridge)[0])
+    grid = _grid(window, times, walkers, system.bridge, walkers.lines())
+    few = () if len(walkers) == asked else (
+        f"only {len(walkers)} of {asked} standing places could be taken, since no more walkers arrive",)
+    response = steady_accelerations(system, walkers, places, grid)
+    return _prediction(system, grid.times, response, traffic.remarks + few)
+
+
+def _prediction(system: OccupiedBridge, times: Array, response: Array, remarks: tuple[str, ...]) -> Prediction:
+    return Prediction(model=system.name, system=system, remarks=remarks, response=ct.TimeResponseData(
+        times, response, output_labels=system.output_labels, issiso=len(response) == 1,
         plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration"))
 
 
@@ -162,9 +197,9 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
 
     Parameters
     ----------
-    model : {"MF", "PMC"}
-        "MF" meets the empty bridge's first mode, "PMC" the effective frequency of the bridge with the
-        standing crowd of this traffic.
+    model : {"SF", "MF", "MFAM", "PMC"}
+        "SF" and "MF" meet the empty bridge's first mode, "MFAM" that of the bridge with the mass of this
+        traffic's standing crowd, "PMC" the effective frequency of the bridge with that crowd.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
@@ -182,15 +217,16 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     >>> from hsictrl.crowd import CrowdFlow
     >>> bridge = reference_bridge(frequency=2.0)
     >>> traffic = CrowdFlow(density=1.0).sample(bridge, rng=np.random.default_rng(1))
-    >>> round(tune("MF", bridge, traffic).target, 3), round(tune("PMC", bridge, traffic).target, 3)
-    (2.0, 1.754)
+    >>> [round(tune(model, bridge, traffic).target, 3) for model in MODELS]
+    [2.0, 2.0, 1.818, 1.754]
     """
     system = _system(model, bridge, traffic, None)
-    return _tuned(traffic, bridge, [effective(system)] if len(system.people) else [])
+    return _tuned(traffic, system, [effective(system)] if len(system.people) else [])
 
 
-def _tuned(traffic: Traffic, bridge: Footbridge, found: Resonances) -> Traffic:
-    frequency = found[0].frequency if found else bridge.modes[0].frequency
+def _tuned(traffic: Traffic, system: OccupiedBridge, found: Resonances) -> Traffic:
+    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
+    frequency = resonant.frequency
     return traffic.tuned(resonant_step_frequency(frequency)[0])
 
 
@@ -199,25 +235,53 @@ def _system(model: str, bridge: Footbridge, traffic: Traffic, sense_at: Any) -> 
     check.choice("model", model, MODELS)
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
-    people, places = traffic.standing_on(bridge) if model == "PMC" else ((), ())
-    return couple(bridge, people, places, sense_at=sense_at, name=model)
+    if not bridge.moves_vertically(0):
+        raise ValueError("the first mode must move vertically, got a shape that does not at its antinode; walking "
+                         "forces are vertical, so describe the bridge with a vertical mode first")
+    deck, people, places = _carrier(model, bridge, traffic)
+    return couple(deck, people, places, sense_at=sense_at, name=model)
+
+
+def _carrier(model: str, bridge: Footbridge, traffic: Traffic) -> tuple[Footbridge, Any, Any]:
+    """Bridge, bodies and their places: where the models differ in human-structure interaction (Table 1)."""
+    if model in ("SF", "MF"):
+        return bridge, (), ()
+    people, places = traffic.standing_on(bridge)
+    return (bridge.with_crowd_mass(float(people.mass.sum())), (), ()) if model == "MFAM" else (bridge, people, places)
+
+
+def _within(traffic: Traffic, window: tuple[float, float], times: Array) -> Array:
+    """Refuse times at which drawn traffic has not filled the deck, or has no more arrivals."""
+    if traffic.drawn_from is not None and (times[0] < window[0] - 1e-9 or times[-1] > window[1] + 1e-9):
+        raise ValueError(f"timepts must lie in the window of the traffic, {window[0]:g} to {window[1]:g} s, got "
+                         f"{times[0]:g} to {times[-1]:g} s; stay inside it, or make the traffic by hand")
+    return times
 
 
 def _relevant(
     traffic: Traffic, bridge: Footbridge, decay: float, window: tuple[float, float], warm_up: float | None,
 ) -> Traffic:
     """Walkers who arrive from one crossing and the warm-up before the window on; all of those made by hand."""
-    if traffic.window is None or not len(traffic.walkers):
+    if traffic.drawn_from is None or not len(traffic.walkers):
         return traffic
     crossing = bridge.length / float(traffic.walkers.speed.min())
-    if warm_up is None:
-        warm_up = settling_time(crossing, decay)
-    return traffic.since(window[0] - crossing - warm_up)
+    drawn = window[0] - crossing - traffic.drawn_from
+    if warm_up is not None and warm_up > drawn * (1 + 1e-9):
+        raise ValueError(f"warm_up must be at most the {drawn:g} s for which this traffic was drawn, got {warm_up:g}; "
+                         "leave it out, or make the traffic by hand")
+    return traffic.since(window[0] - crossing - (settling_time(crossing, decay) if warm_up is None else warm_up))
 
 
 def _resonances(system: OccupiedBridge) -> Resonances:
-    """Effective properties of every mode where somebody stands; an empty bridge has its own."""
-    return [effective(system, mode=j) for j in range(system.bridge.n_modes if len(system.people) else 0)]
+    """Effective properties of every mode where somebody stands, if it has a peak; an empty bridge has its own."""
+    return [_resonance(system, j) for j in range(system.bridge.n_modes if len(system.people) else 0)]
+
+
+def _resonance(system: OccupiedBridge, mode: int) -> EffectiveProperties | None:
+    try:
+        return effective(system, mode=mode)
+    except ValueError:    # so much damping, or so little, that there is no peak to read
+        return None
 
 
 def _slowest_decay(system: OccupiedBridge, found: Resonances) -> float:
@@ -225,15 +289,16 @@ def _slowest_decay(system: OccupiedBridge, found: Resonances) -> float:
     if not found:
         return float(np.min(system.bridge.damping * system.bridge.omega))
     bodies = np.min(system.people.damping * system.people.omega)
-    return float(min(bodies, *(2 * np.pi * one.frequency * one.damping for one in found)))
+    read = [(mode if one is None else one) for mode, one in zip(system.bridge.modes, found, strict=True)]
+    return float(min(bodies, *(2 * np.pi * one.frequency * one.damping for one in read)))
 
 
 def _grid(
-    window: tuple[float, float], times: Array | None, traffic: Traffic, bridge: Footbridge, lines: Lines,
+    window: tuple[float, float], times: Array | None, walkers: Walkers, bridge: Footbridge, lines: Lines,
 ) -> Grid:
     highest = (max((force.highest_frequency for _, force in lines), default=0.0),
                max(mode.frequency for mode in bridge.modes))
-    start = float(np.min(traffic.walkers.arrival, initial=window[0]))
+    start = float(np.min(walkers.arrival, initial=window[0]))
     return Grid.over(window, start, *highest) if times is None else Grid.at(times, start, *highest)
 
 

@@ -2,7 +2,9 @@
 
 from hsictrl.walking.lines import ForceLines
 from hsictrl.walking.model import WalkingForce
-from hsictrl.walking.narrowband import ZivanovicForce, kerr_factor
+from hsictrl.walking.narrowband import MainHarmonics, ZivanovicForce, kerr_factor
 from hsictrl.walking.periodic import HarmonicForce, YoungForce
 
-__all__ = ["ForceLines", "HarmonicForce", "WalkingForce", "YoungForce", "ZivanovicForce", "kerr_factor"]
+__all__ = [
+    "ForceLines", "HarmonicForce", "MainHarmonics", "WalkingForce", "YoungForce", "ZivanovicForce", "kerr_factor",
+]

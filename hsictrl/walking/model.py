@@ -73,6 +73,22 @@ class WalkingForce(ABC):
         array([[301.]])
         """
 
+    @abstractmethod
+    def periodic(self) -> WalkingForce:
+        """Give the same walkers without intra-person variability: all their steps are alike.
+
+        Returns
+        -------
+        WalkingForce
+            A periodic force of the same draws; a force that is periodic is its own.
+
+        Examples
+        --------
+        >>> from hsictrl.walking import YoungForce, ZivanovicForce
+        >>> YoungForce().periodic(), ZivanovicForce().periodic().n_draws == ZivanovicForce().n_draws
+        (YoungForce(values='mean'), True)
+        """
+
 
 def walkers(
     step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike, n_draws: int,

@@ -123,6 +123,50 @@ class ZivanovicForce(WalkingForce):
         return ForceLines(coefficients=coefficients, first=round(0.25 / self.spacing),
                           spacing=self.spacing, step_frequency=f_s)
 
+    def periodic(self) -> MainHarmonics:
+        return MainHarmonics(self)
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class MainHarmonics(WalkingForce):
+    """The walkers of a narrow-band force, all of whose steps are alike: W Σ_i DLF_i cos(2πi f_s t + θ_i), i = 1 … 5.
+
+    Load factors and phases come from the draws of the narrow-band force: DLF_i is the same, and θ_i is the phase
+    of its line at i f_s. What is left out is the spread about the main harmonics, and the sub-harmonics.
+
+    Parameters
+    ----------
+    narrow_band : ZivanovicForce
+        The force whose walkers these are.
+
+    Examples
+    --------
+    >>> model = ZivanovicForce().periodic()
+    >>> force = model.lines([2.0], weight=[700.0], draws=np.full((1, model.n_draws), 0.5))
+    >>> abs(force.coefficients).round(1)          # medians: 0.405 W, then some 7, 5, 5 and 3 % of W
+    array([[283.6,  49.3,  35.1,  35.1,  21.3]])
+    """
+
+    narrow_band: ZivanovicForce
+
+    def __post_init__(self) -> None:
+        check.instance("narrow_band", self.narrow_band, ZivanovicForce, "use ZivanovicForce().periodic()")
+
+    @property
+    def n_draws(self) -> int:
+        return self.narrow_band.n_draws
+
+    def lines(self, step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike) -> ForceLines:
+        f_s, W, draws = walkers(step_frequency, weight, draws, self.n_draws)
+        centres = 5 + np.round((np.arange(1, 6) - 0.25) / self.narrow_band.spacing).astype(np.intp)
+        factors = _load_factors(f_s, draws[:, :5])[:, 1::2]
+        return ForceLines(coefficients=W[:, np.newaxis] * factors * phasors(draws[:, centres]),
+                          first=1, spacing=1.0, step_frequency=f_s)
+
+    def periodic(self) -> MainHarmonics:
+        return self
+
 
 @cache
 def _shapes(spacing: float, scaling: str) -> Array:

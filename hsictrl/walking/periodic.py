@@ -55,6 +55,9 @@ class HarmonicForce(WalkingForce):
         coefficients = np.multiply.outer(W, self.factors * np.exp(1j * np.asarray(self.phases)))
         return ForceLines(coefficients=coefficients, first=1, spacing=1.0, step_frequency=f_s)
 
+    def periodic(self) -> HarmonicForce:
+        return self
+
 
 # Young (2001), as in CCIP-016: factor of harmonic h is constant + slope h f_s, the first at most the cap
 YOUNG = {
@@ -103,3 +106,6 @@ class YoungForce(WalkingForce):
         factors[:, 0] = np.minimum(factors[:, 0], cap)
         return ForceLines(coefficients=W[:, np.newaxis] * factors * phasors(draws),
                           first=1, spacing=1.0, step_frequency=f_s)
+
+    def periodic(self) -> YoungForce:
+        return self
