@@ -96,7 +96,8 @@ def _bound(
     if np.any(wrong):
         first = np.argwhere(wrong)[0]
         place = f"[{', '.join(map(str, first))}]" if array.ndim else ""
-        rule, value = _rule(above, least, below, most), array[tuple(first)]
+        value = array[tuple(first)]
+        rule = _rule(above, least, below, most) if not np.isinf(value) else "be finite"
         raise ValueError(f"{name}{place} must {rule}, got {value:g}; {remedy}")
 
 
@@ -137,3 +138,11 @@ def points(name: str, values: Any, *, least: int = 0) -> Array:
         raise ValueError(f"{name} must have shape (n,) or (n, 2), got {array.shape}; {remedy}")
     array.flags.writeable = False
     return array
+
+
+def ports(values: Any) -> tuple[str, ...]:
+    """Return the ports of a block, displacement and velocity with or without acceleration; refuse anything else."""
+    given = tuple(values) if isinstance(values, Sequence) else values
+    if given not in (("y", "v"), ("y", "v", "a")):
+        raise ValueError(f"ports must be ('y', 'v', 'a') or ('y', 'v'), got {given!r}; choose one of these")
+    return tuple(given)

@@ -2,7 +2,7 @@
 
 Sources: Sétra (2006), Footbridges: assessment of vibrational behaviour; HiVoSS (2008), Design of footbridges:
 guideline; ISO 10137 (2007); EN 1990 A2.4.3.2. They were read through public manuals and implementations; a
-value that none of these gave is marked "not checked against the guide" or "the standard".
+value that none of these gave is marked "unverified: not checked against the guide" or "the standard".
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def comfort_class(acceleration: float, direction: str = "vertical") -> str:
     Notes
     -----
     Vertical: CL1 < 0.5 ≤ CL2 < 1.0 ≤ CL3 ≤ 2.5 < CL4. Lateral: CL1 < 0.1 ≤ CL2 < 0.3 ≤ CL3 ≤ 0.8 < CL4; its
-    bound of 0.3 is not checked against the guide. To which class a bound itself belongs is our reading.
+    bound of 0.3 is unverified: not checked against the guide. To which class a bound itself belongs is our reading.
 
     Source: HiVoSS (2008), comfort classes, and the ranges of Sétra (2006).
 

@@ -1,8 +1,10 @@
 """Every refusal says the rule, the value and the remedy (habit 11 of the house)."""
 
+import control as ct
 import numpy as np
 import pytest
 
+import hsictrl as hsi
 from hsictrl import (
     CrowdFlow,
     Footbridge,
@@ -70,10 +72,11 @@ def test_bounds_are_kept_and_named(bounds, rule, outside, inside):
     for value in inside:
         assert check.number("it", value, **bounds, remedy="mend it") == value
     for value in [*outside, NAN, np.inf, -np.inf]:
+        named = "be finite" if np.isinf(value) else rule
         refused(ValueError, lambda value=value: check.number("it", value, **bounds, remedy="mend it"),
-                f"it must {rule}", f"{value:g}", "mend it")
+                f"it must {named}", f"{value:g}", "mend it")
         refused(ValueError, lambda value=value: check.numbers("it", [[inside[0], value]], **bounds, remedy="mend it"),
-                f"it[0, 1] must {rule}", f"{value:g}", "mend it")
+                f"it[0, 1] must {named}", f"{value:g}", "mend it")
 
 
 @pytest.mark.parametrize("value", ["2", None, True, 1j, [[1], [1, 2]], object()])
@@ -302,3 +305,23 @@ def test_the_assessment_refuses(name):
 def test_what_lies_just_inside_is_taken(flow):
     assert flow.speed_on(BRIDGE) > 0
     assert len(flow.crowd(BRIDGE, RNG)[0]) == flow.persons_on(BRIDGE)
+
+
+@pytest.mark.parametrize(("call", "message"), [
+    (lambda: hsi.interconnect([1, 2]), "syslist must be of type InputOutputSystem, got int; give a list of control"),
+    (lambda: hsi.interconnect(None), "syslist must be of type Sequence, got NoneType; give a list of control systems"),
+    (lambda: hsi.Crowd.of(None), "bodies must be of type Sequence, got NoneType; give a sequence of Pedestrian"),
+    (lambda: hsi.Pedestrian().ss(ports=None), r"ports must be \('y', 'v', 'a'\) or \('y', 'v'\), got None; choose"),
+    (lambda: hsi.reference_bridge().ss(at=[25.0], ports=7), r"ports must be .*, got 7; choose one of these"),
+    (lambda: hsi.reference_bridge().participation([25.0] * 3, ["vertical", "lateral"]),
+     "direction must be one for all positions or one each, got 2 for 3 positions; match them"),
+    (lambda: hsi.CrowdFlow(persons=10).density_on(3), "bridge must be of type Footbridge, got int; describe the"),
+    (lambda: hsi.couple(hsi.reference_bridge(), name=3), "name must be of type str, got int; give a word"),
+    (lambda: hsi.PercentileRule(percentile=0.95), r"percentile must lie in \[1, 100\), got 0.95; give percent"),
+    (lambda: hsi.MeasuredBridge(response=ct.frd(np.ones((2, 2, 5)), np.arange(1.0, 6.0)), positions=[25.0, 25.0],
+                                modal_mass=1.0),
+     r"positions must differ, got positions\[1\] = \(25, 0\) m a second time; leave one of the two channels out"),
+])
+def test_what_used_to_fail_below_is_refused_above(call, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        call()

@@ -130,7 +130,7 @@ def test_example_at_the_top_of_the_module_runs(written):
     ("[traffic.population]\nmass = [75, true]", r"mass must be a number or \[mean, .*, got \[75, True"),
     ("[force]\nmodel = 'harmonic'", r"line 1, \[force\]: the table must hold 'factors', got no 'factors'"),
     ("[force]\nmodel = 'young'\nvalues = 'worst'", r"line 3, \[force\] values: values must be one of 'mean', 'design'"),
-    ("[force]\nmodel = 'zivanovic'\nspacing = 0.03", r"line 3, \[force\] spacing: spacing must divide 0.25"),
+    ("[force]\nmodel = 'zivanovic'\nspacing = 0.03", r"line 3, \[force\] spacing: spacing must be 0.01 where scal"),
     ("[bridge]\nkind = \nlength = 2", r"must be TOML in UTF-8, got Invalid value \(at line 2, column 8\); correct"),
     ("seed = 1\nseed = 2", r"must be TOML in UTF-8, got Cannot overwrite a value \(at "),
 ])

@@ -311,7 +311,7 @@ def test_the_interface_is_abstract():
         (lambda: BeamShape([10.0], number=0), "number must be at least 1, got 0; count the modes"),
         (lambda: BeamShape([10.0], direction="up"), "direction must be one of .* got 'up'"),
         (lambda: SineShape(0.0), "length must be above 0, got 0; give the length"),
-        (lambda: SineShape(np.inf), "length must be above 0, got inf"),
+        (lambda: SineShape(np.inf), "length must be finite, got inf"),
         (lambda: SineShape(10.0, 0), "number must be at least 1, got 0; count the half waves"),
         (lambda: SineShape(10.0, direction="up"), "direction must be one of"),
         (lambda: SineShape(10.0)(1.0, direction="z"), "direction must be one of .* got 'z'; choose"),

@@ -318,7 +318,7 @@ def returns(*values):
         (lambda: monte_carlo(lognormal, executor=2), TypeError,
          r"executor must be of type Executor, got int; .*None to run"),
         (lambda: trial_rng(1, -1), ValueError, r"index must be at least 0, got -1; count trials from 0"),
-        (lambda: PercentileRule(percentile=100), ValueError, r"percentile must lie in \(0, 100\), got 100"),
+        (lambda: PercentileRule(percentile=100), ValueError, r"percentile must lie in \[1, 100\), got 100"),
         (lambda: PercentileRule(tolerance=5), ValueError, r"tolerance must lie in \(0, 1\), got 5; .*frac"),
         (lambda: MeanRule(confidence=95), ValueError, r"confidence must lie in \[0.5, 1\), got 95; .*perc"),
         (lambda: MeanRule().judge([]), ValueError, r"number of samples must be at least 1, got 0"),

@@ -371,7 +371,7 @@ def test_the_interface_cannot_be_instantiated():
     (lambda: HarmonicForce([-0.1]), r"factors\[0\] must be at least 0, got -0.1; .*phase of pi"),
     (lambda: HarmonicForce([0.4], phases=[0.0, 0.0]), r"phases must have shape \(1,\), got \(2,\)"),
     (lambda: YoungForce(values="max"), "values must be one of 'mean', 'design', got 'max'"),
-    (lambda: ZivanovicForce(spacing=0.03), "whole number of lines, got 0.03; give 0.03125"),
+    (lambda: ZivanovicForce(spacing=0.03, scaling="variance"), "whole number of lines, got 0.03; give 0.03125"),
     (lambda: ZivanovicForce(spacing=0.5), r"spacing must lie in \(0, 0.25\], got 0.5"),
     (lambda: ZivanovicForce(spacing=0.005), "must be 0.01 .* got 0.005; give scaling='variance'"),
     (lambda: ZivanovicForce(scaling="none"), "scaling must be one of 'published', 'variance'"),

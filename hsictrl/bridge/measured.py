@@ -59,6 +59,7 @@ class MeasuredBridge:
             raise ValueError("response must be finite, got NaN or infinity; leave out the frequencies where it is not")
         check.choice("direction", self.direction, check.DIRECTIONS)
         mass = check.number("modal_mass", self.modal_mass, above=0, remedy="give kg")
+        _refuse_repeated(places)
         check.store(self, positions=places, modal_mass=mass)
 
     def points_of(self, name: str, positions: Any) -> np.ndarray:
@@ -100,3 +101,10 @@ def _check_rising(omega: Array) -> None:
         i = falls[0]
         raise ValueError(f"the response's omega[{i + 1}] must be above omega[{i}], got {omega[i + 1]:g} rad/s after "
                          f"{omega[i]:g} rad/s; sort the record by frequency, and give each once")
+
+
+def _refuse_repeated(places: Array) -> None:
+    for i, place in enumerate(places):
+        if np.any(np.all(np.abs(places[:i] - place) < 1e-6, axis=1)):
+            raise ValueError(f"positions must differ, got positions[{i}] = ({place[0]:g}, {place[1]:g}) m a second "
+                             "time; leave one of the two channels out")

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
-from hsictrl.bridge.mode import PERCENT, Mode
+from hsictrl._names import labels
+from hsictrl.bridge.mode import Mode
 from hsictrl.bridge.shapes import Shape, SineShape, beam_modes
 
 
@@ -49,10 +50,9 @@ class Footbridge:
     mass: float
 
     def __post_init__(self) -> None:
-        store = object.__setattr__
-        store(self, "modes", _modes(self.modes))
+        check.store(self, modes=_modes(self.modes))
         for name, unit in (("length", "m"), ("width", "m"), ("mass", "kg")):
-            store(self, name, check.number(name, getattr(self, name), above=0, remedy=f"give {unit}"))
+            check.store(self, **{name: check.number(name, getattr(self, name), above=0, remedy=f"give {unit}")})
         for mode in self.modes:
             if not np.isclose(mode.shape.length, self.length):
                 raise ValueError(f"every shape must be as long as the deck, {self.length:g} m, got "
@@ -283,6 +283,9 @@ class Footbridge:
         """
         x, y = check.points("positions", positions).T
         vertical = check.directions(direction) == "vertical"
+        if vertical.shape not in ((), x.shape):
+            raise ValueError(f"direction must be one for all positions or one each, got {vertical.size} for {len(x)} "
+                             "positions; match them")
         carried = self.carries(positions)
         return np.column_stack([
             carried * np.where(vertical, mode.shape(x, y, "vertical"), mode.shape(x, y, "lateral"))
@@ -341,8 +344,7 @@ class Footbridge:
         >>> reference_bridge(frequency=2.0).ss(at=[25.0]).output_labels
         ['y[0]', 'v[0]', 'a[0]']
         """
-        if tuple(ports) not in (("y", "v"), ("y", "v", "a")):
-            raise ValueError(f"ports must be ('y', 'v', 'a') or ('y', 'v'), got {tuple(ports)}; choose one of these")
+        ports = check.ports(ports)
         rows = self.participation(self.on_deck("at", check.points("at", at, least=1)))
         n, n_m = rows.shape
         zero, eye = np.zeros((n_m, n_m)), np.eye(n_m)
@@ -352,8 +354,8 @@ class Footbridge:
         direct = np.stack([np.zeros((n, n)), np.zeros((n, n)), rows @ rows.T], axis=1)
         kept = len(ports)
         return ct.ss(A, B, motion[:, :kept].reshape(n * kept, -1), direct[:, :kept].reshape(n * kept, -1),
-                     inputs=_labels("F", n), outputs=[f"{port}[{i}]" for i in range(n) for port in ports],
-                     states=_labels("z", n_m) + _labels("dz", n_m), name=name)
+                     inputs=labels("F", n), outputs=labels(ports, n),
+                     states=labels("z", n_m) + labels("dz", n_m), name=name)
 
 
 def reference_bridge(*, frequency: float = 2.0, damping: float = 0.005, modal_mass: float = 25e3) -> Footbridge:
@@ -389,10 +391,6 @@ def _loaded(mode: Mode, mass: float) -> Mode:
     return replace(mode, modal_mass=modal_mass, frequency=mode.frequency * float(np.sqrt(mode.modal_mass / modal_mass)))
 
 
-def _labels(base: str, n: int) -> list[str]:
-    return [f"{base}[{i}]" for i in range(n)]
-
-
 def _modes(modes: Any) -> tuple[Mode, ...]:
     modes = tuple(modes) if isinstance(modes, Iterable) else (modes,)
     if not modes:
@@ -403,7 +401,7 @@ def _modes(modes: Any) -> tuple[Mode, ...]:
 
 
 def _one_per_mode(damping: Any, n_modes: int) -> Array:
-    ratios = check.numbers("damping", damping, least=0, below=1, remedy=PERCENT)
+    ratios = check.numbers("damping", damping, least=0, below=1, remedy=check.PERCENT)
     if ratios.ndim and ratios.shape != (n_modes,):
         raise ValueError(f"damping must be one number or one per mode ({n_modes}), got shape {ratios.shape}; "
                          "match it to n_modes")

@@ -11,8 +11,6 @@ import numpy as np
 from hsictrl import _checks as check
 from hsictrl.bridge.shapes import Shape
 
-PERCENT = "give a fraction, not percent"
-
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,10 +42,10 @@ class Mode:
     shape: Shape
 
     def __post_init__(self) -> None:
-        store = object.__setattr__
-        store(self, "frequency", check.number("frequency", self.frequency, above=0, remedy="give Hz"))
-        store(self, "damping", check.number("damping", self.damping, least=0, below=1, remedy=PERCENT))
-        store(self, "modal_mass", check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
+        check.store(
+            self, frequency=check.number("frequency", self.frequency, above=0, remedy="give Hz"),
+            damping=check.number("damping", self.damping, least=0, below=1, remedy=check.PERCENT),
+            modal_mass=check.number("modal_mass", self.modal_mass, above=0, remedy="give kg"))
         check.instance("shape", self.shape, Shape, "use SineShape, BeamShape or a Shape of your own")
 
     def __str__(self) -> str:

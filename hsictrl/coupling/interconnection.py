@@ -9,6 +9,7 @@ import control as ct
 import numpy as np
 from scipy.linalg import block_diag
 
+from hsictrl import _checks as check
 from hsictrl._checks import Array
 
 
@@ -76,6 +77,8 @@ def interconnect(
     >>> loop.nstates
     4
     """
+    for block in check.instance("syslist", syslist, Sequence, "give a list of control systems"):
+        check.instance("syslist", block, ct.InputOutputSystem, "give a list of control systems")
     stand_ins = _without_linearity(syslist)
     joined = ct.interconnect(
         stand_ins, connections=connections, inplist=inplist, outlist=outlist, params=params,

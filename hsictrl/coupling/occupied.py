@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._names import labels
 from hsictrl.bridge import Footbridge, MeasuredBridge
 from hsictrl.coupling.blocks import blocks_of
 from hsictrl.coupling.condensation import CondensedCrowd
@@ -73,6 +74,7 @@ def couple(
     2
     """
     check.instance("bridge", bridge, (Footbridge, MeasuredBridge), "describe the bridge first")
+    check.instance("name", name, str, "give a word")
     places = check.points("positions", positions)
     crowd = _crowd(people, len(places))
     if isinstance(bridge, MeasuredBridge):
@@ -126,8 +128,8 @@ class OccupiedBridge(ct.StateSpace):
         n_m, n = self.condensed.rows.shape[1], len(people)
         super().__init__(
             *self._matrices(), 0, name=name,
-            inputs=_labels("F", len(self.force_at)), outputs=_labels("a", len(self.sense_at)),
-            states=_labels("z", n_m) + _labels("u", n) + _labels("dz", n_m) + _labels("du", n))
+            inputs=labels("F", len(self.force_at)), outputs=labels("a", len(self.sense_at)),
+            states=labels("z", n_m) + labels("u", n) + labels("dz", n_m) + labels("du", n))
         for matrix in (self.A, self.B, self.C, self.D):    # `horner` would not follow a change
             matrix.flags.writeable = False
 
@@ -311,10 +313,6 @@ def _points(bridge: Footbridge, name: str, places: Any) -> Array:
     """The places asked for, or the antinode of the first mode."""
     antinode = [bridge.modes[0].shape.antinode]
     return bridge.on_deck(name, check.points(name, antinode if places is None else places, least=1))
-
-
-def _labels(base: str, n: int) -> list[str]:
-    return [f"{base}[{i}]" for i in range(n)]
 
 
 def _shortened(labels: list[str]) -> str:

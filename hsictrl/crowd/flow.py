@@ -121,7 +121,7 @@ class CrowdFlow:
         if self.speed is not None:
             check.number("speed", self.speed, above=0, most=10, remedy="give m/s, at most 10")
         if self.step_frequency is not None:
-            object.__setattr__(self, "step_frequency", _step_rule(self.step_frequency))
+            check.store(self, step_frequency=_step_rule(self.step_frequency))
         check.number("weight", self.weight, above=0, remedy="give N")
         check.instance("population", self.population, Population, "use Population.walking()")
 
@@ -147,6 +147,7 @@ class CrowdFlow:
         >>> CrowdFlow(persons=15).density_on(reference_bridge())
         0.1
         """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         if self.density is not None:
             return self.density
         assert self.persons is not None

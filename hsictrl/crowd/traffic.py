@@ -63,14 +63,13 @@ class Traffic:
         given: Any = self.walkers
         walkers = given if isinstance(given, Walkers) else _by_hand(given, rng)
         target = float(np.mean(walkers.step_frequency)) if self.target is None else self.target
-        store = object.__setattr__
-        store(self, "walkers", walkers)
-        store(self, "target", check.number("target", target, above=0, remedy="give Hz"))
-        store(self, "window", None if self.window is None else _window(self.window))
-        store(self, "standing", None if self.standing is None else _standing(self.standing))
-        store(self, "spread", check.number("spread", self.spread, least=0, remedy="give Hz, 0 for none"))
+        check.store(
+            self, walkers=walkers, target=check.number("target", target, above=0, remedy="give Hz"),
+            window=None if self.window is None else _window(self.window),
+            standing=None if self.standing is None else _standing(self.standing),
+            spread=check.number("spread", self.spread, least=0, remedy="give Hz, 0 for none"))
         if self.drawn_from is not None:
-            store(self, "drawn_from", check.number("drawn_from", self.drawn_from, remedy="give s"))
+            check.number("drawn_from", self.drawn_from, remedy="give s")
 
     def __str__(self) -> str:
         n = len(self.walkers)
@@ -160,6 +159,7 @@ class Traffic:
         >>> Traffic([walker]).observed(reference_bridge())
         (0.0, 40.0)
         """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         if self.window is not None:
             return self.window
         if not len(self.walkers):

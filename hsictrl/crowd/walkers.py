@@ -68,8 +68,7 @@ class Walker:
     def __post_init__(self) -> None:
         check.instance("body", self.body, Pedestrian, "use hsictrl.Pedestrian()")
         check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
-        for name, rule in RULES.items():
-            object.__setattr__(self, name, check.number(name, getattr(self, name), **rule))
+        check.store(self, **{name: check.number(name, getattr(self, name), **rule) for name, rule in RULES.items()})
 
     def ss(self, *, name: str = "walker") -> ct.StateSpace:
         """Give the walker's body as a block, see `Pedestrian.ss`.
@@ -133,15 +132,14 @@ class Walkers:
     def __post_init__(self) -> None:
         for name in ("weight", "step_frequency", "speed"):
             values = check.numbers(name, getattr(self, name), above=0, remedy=f"give one {name} per walker")
-            object.__setattr__(self, name, values)
+            check.store(self, **{name: values})
         for name in ("arrival", "offset"):
-            object.__setattr__(self, name, check.numbers(name, getattr(self, name), remedy="give one per walker"))
+            check.store(self, **{name: check.numbers(name, getattr(self, name), remedy="give one per walker")})
         lengths = {name: len(getattr(self, name)) for name in ("bodies", "model", *ARRAYS)}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"walkers' arrays must have the same length, got {lengths}; give one value per walker")
-        object.__setattr__(self, "forces", tuple(self.forces))
-        object.__setattr__(self, "model", _read_only(np.array(self.model, dtype=np.intp)))
-        object.__setattr__(self, "draws", tuple(_read_only(np.asarray(table)[:]) for table in self.draws))
+        check.store(self, forces=tuple(self.forces), model=_read_only(np.array(self.model, dtype=np.intp)),
+                    draws=tuple(_read_only(np.asarray(table)[:]) for table in self.draws))
         self._check_draws()
 
     def _check_draws(self) -> None:

@@ -99,7 +99,7 @@ def _rows(mass_ratio: float, ensemble: Ensemble) -> Rows:
 
 def _settled_at(samples: Array, rule: StopRule) -> int:
     """Number of trials at which the study would have ended had this quantity been alone."""
-    return next(n for n in checkpoints(rule, len(samples)) if rule.judge(samples[:n]).converged)
+    return next((n for n in checkpoints(rule, len(samples)) if rule.judge(samples[:n]).converged), len(samples))
 
 
 def _statistics(name: str, ensemble: Ensemble, index: int) -> dict[str, float]:

@@ -160,8 +160,7 @@ def block_matrices(body: Pedestrian) -> tuple[Array, Array, Array, Array]:
 
 def checked_ports(ports: Sequence[str], unsprung_mass: Array) -> int:
     """Number of ports, having checked that they are y, v or y, v, a, and that a serves any unsprung mass."""
-    if tuple(ports) not in (("y", "v"), ("y", "v", "a")):
-        raise ValueError(f"ports must be ('y', 'v', 'a') or ('y', 'v'), got {tuple(ports)}; choose one of these")
+    ports = check.ports(ports)
     if len(ports) == 2 and np.any(unsprung_mass):
         raise ValueError(f"ports must hold 'a' for a body with unsprung mass, got {tuple(ports)} and "
                          f"{np.max(unsprung_mass):g} kg; add 'a', or set sprung_ratio=1")

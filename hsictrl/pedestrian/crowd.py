@@ -13,6 +13,7 @@ from scipy.linalg import block_diag
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._names import labels
 from hsictrl.pedestrian.body import RULES, Pedestrian, SprungBody, block_matrices, checked_ports
 
 
@@ -64,7 +65,7 @@ class Crowd(SprungBody):
         >>> len(Crowd.of([Pedestrian(), Pedestrian(mass=80.0)]))
         2
         """
-        for body in bodies:
+        for body in check.instance("bodies", bodies, Sequence, "give a sequence of Pedestrian"):
             check.instance("bodies", body, Pedestrian, "give a sequence of Pedestrian")
         values: dict[str, Any] = {name: [getattr(body, name) for body in bodies] for name in cls.__slots__}
         return cls(**values)
@@ -138,8 +139,8 @@ class Crowd(SprungBody):
             raise ValueError("a block must hold at least one body, got none; leave an empty crowd out of the loop")
         A, B, C, D = zip(*map(block_matrices, self), strict=True)
         return ct.ss(block_diag(*A), block_diag(*(b[:, :columns] for b in B)), block_diag(*C),
-                     block_diag(*(d[:, :columns] for d in D)), inputs=_labels(ports, len(self)),
-                     outputs=_labels(["F"], len(self)), states=_labels(["u", "du"], len(self)), name=name)
+                     block_diag(*(d[:, :columns] for d in D)), inputs=labels(ports, len(self)),
+                     outputs=labels(["F"], len(self)), states=labels(["u", "du"], len(self)), name=name)
 
 
 def _same_length(values: Sequence[Any]) -> tuple[NDArray[Any], ...]:
@@ -154,7 +155,3 @@ def _same_length(values: Sequence[Any]) -> tuple[NDArray[Any], ...]:
     for array in arrays:
         array.flags.writeable = False
     return arrays
-
-
-def _labels(bases: Sequence[str], n: int) -> list[str]:
-    return [f"{base}[{i}]" for i in range(n) for base in bases]

@@ -96,7 +96,7 @@ class PercentileRule(StopRule):
     Parameters
     ----------
     percentile : float
-        The percentile, above 0 and below 100 [%].
+        The percentile, at least 1 and below 100 [%].
     tolerance : float
         Largest distance from the estimate to either end, as a fraction of the estimate [-].
     confidence : float
@@ -120,7 +120,7 @@ class PercentileRule(StopRule):
     confidence: float = 0.95
 
     def __post_init__(self) -> None:
-        check.number("percentile", self.percentile, above=0, below=100, remedy="give percent, such as 95")
+        check.number("percentile", self.percentile, least=1, below=100, remedy="give percent, such as 95")
         _check_levels(self.tolerance, self.confidence)
 
     @property

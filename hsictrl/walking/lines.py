@@ -54,9 +54,10 @@ class ForceLines:
         coefficients = _coefficients(self.coefficients)
         frequency = check.numbers("step_frequency", self.step_frequency, above=0, remedy="give Hz")
         shaped("step_frequency", frequency, coefficients.shape[:1], "give one per row of coefficients")
-        store(self, coefficients=coefficients, step_frequency=frequency,
-               first=check.whole("first", self.first, least=1, remedy="leave the static weight out"),
-               spacing=check.number("spacing", self.spacing, above=0, remedy="give a fraction of a step"))
+        check.store(
+            self, coefficients=coefficients, step_frequency=frequency,
+            first=check.whole("first", self.first, least=1, remedy="leave the static weight out"),
+            spacing=check.number("spacing", self.spacing, above=0, remedy="give a fraction of a step"))
 
     @property
     def n_walkers(self) -> int:
@@ -217,8 +218,3 @@ def _coefficients(values: Any) -> Complex:
 def shaped(name: str, array: NDArray[Any], shape: tuple[int, ...], remedy: str) -> None:
     if array.shape != shape:
         raise ValueError(f"{name} must have shape {shape}, got {array.shape}; {remedy}")
-
-
-def store(instance: Any, **values: Any) -> None:
-    for name, value in values.items():
-        object.__setattr__(instance, name, value)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._draws import truncated_normal
-from hsictrl.walking.lines import ForceLines, store
+from hsictrl.walking.lines import ForceLines
 from hsictrl.walking.model import WalkingForce, phasors, walkers
 
 # Živanović, Pavić & Reynolds (2007): (a, b, c) of the Gaussians about main harmonic i, sub-harmonic i − ½
@@ -84,7 +84,7 @@ class ZivanovicForce(WalkingForce):
     Notes
     -----
     The table of the sub-harmonics has one source and is less well constrained than the main one. That phases
-    are uniform is from memory, unverified.
+    are uniform is unverified: not checked against the source.
 
     Examples
     --------
@@ -101,15 +101,15 @@ class ZivanovicForce(WalkingForce):
 
     def __post_init__(self) -> None:
         spacing = check.number("spacing", self.spacing, above=0, most=0.25, remedy="give 0.01")
+        check.choice("scaling", self.scaling, ("published", "variance"))
+        if self.scaling == "published" and abs(spacing - 0.01) > 1e-9:
+            raise ValueError(f"spacing must be 0.01 where scaling is 'published', got {spacing:g}; "
+                             "give scaling='variance'")
         parts = round(0.25 / spacing)
         if abs(parts * spacing - 0.25) > 1e-9:
             raise ValueError(f"spacing must divide 0.25 into a whole number of lines, got {spacing:g}; "
                              f"give {0.25 / parts:.9g}")
-        check.choice("scaling", self.scaling, ("published", "variance"))
-        if self.scaling == "published" and parts != 25:
-            raise ValueError(f"spacing must be 0.01 where scaling is 'published', got {spacing:g}; "
-                             "give scaling='variance'")
-        store(self, spacing=0.25 / parts)
+        check.store(self, spacing=0.25 / parts)
 
     @property
     def n_draws(self) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hsictrl import _checks as check
-from hsictrl.walking.lines import ForceLines, shaped, store
+from hsictrl.walking.lines import ForceLines, shaped
 from hsictrl.walking.model import WalkingForce, phasors, walkers
 
 
@@ -44,7 +44,7 @@ class HarmonicForce(WalkingForce):
         phases = np.zeros_like(factors) if self.phases is None else self.phases
         phases = check.numbers("phases", phases, remedy="give rad")
         shaped("phases", phases, factors.shape, "give one phase per factor")
-        store(self, factors=tuple(factors.tolist()), phases=tuple(phases.tolist()))
+        check.store(self, factors=tuple(factors.tolist()), phases=tuple(phases.tolist()))
 
     @property
     def n_draws(self) -> int:
@@ -73,13 +73,13 @@ class YoungForce(WalkingForce):
 
     The load factor of harmonic h is linear in the harmonic's frequency f = h f_s, never below zero; the first
     one is capped. There is no variability within a walker. The formulas are used as they are beyond their
-    stated ranges of f (1–2.8, 2–5.6, 3–8.4 and 4–11.2 Hz; from memory, unverified).
+    stated ranges of f (1–2.8, 2–5.6, 3–8.4 and 4–11.2 Hz; unverified: not checked against the source).
 
     Parameters
     ----------
     values : {"mean", "design"}
         The mean factors 0.37(f − 0.95) ≤ 0.50, 0.054 + 0.0044 f, 0.026 + 0.0050 f, 0.010 + 0.0051 f, which
-        are from memory, unverified; or the design factors 0.41(f − 0.95) ≤ 0.56, 0.069 + 0.0056 f,
+        are unverified: not checked against the source; or the design factors 0.41(f − 0.95) ≤ 0.56, 0.069 + 0.0056 f,
         0.033 + 0.0064 f, 0.013 + 0.0065 f.
 
     Examples
