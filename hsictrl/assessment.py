@@ -20,6 +20,7 @@ from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
 PERSON_MASS = 70.0   # kg, of the guides
+PAPER_RULE = PercentileRule()
 
 
 @final
@@ -197,7 +198,7 @@ class Assessment:
 
 def assess(
     bridge: Footbridge, flow: CrowdFlow, *, force: WalkingForce | None = None,
-    rule: PercentileRule = PercentileRule(), seed: int = 1, executor: Executor | None = None,  # noqa: B008
+    rule: PercentileRule = PAPER_RULE, seed: int = 1, executor: Executor | None = None,
 ) -> Assessment:
     """Assess a footbridge under a flow of people: damping, accelerations, comfort class.
 

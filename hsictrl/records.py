@@ -22,7 +22,7 @@ def running_rms(response: ct.TimeResponseData, *, duration: float = 1.0) -> Arra
     Returns
     -------
     array, shape of ``response.outputs``
-        Running r.m.s. of every output [unit of the outputs].
+        Running RMS of every output [unit of the outputs].
 
     Raises
     ------
@@ -31,7 +31,7 @@ def running_rms(response: ct.TimeResponseData, *, duration: float = 1.0) -> Arra
 
     Notes
     -----
-    Source: the running r.m.s. of ISO 2631-1:1997, eq. (2), of the signal as it is, without frequency
+    Source: the running RMS of ISO 2631-1:1997, eq. (2), of the signal as it is, without frequency
     weighting; its greatest value is the MTVV of eq. (4). The square is integrated by the trapezoidal rule, in one
     running sum: what is a million times quieter than what came before is lost in rounding.
 

@@ -1,4 +1,4 @@
-"""Truth here: the r.m.s. of a sine, of a constant, and ISO 2631-1's integral by brute force."""
+"""Truth here: the RMS of a sine, of a constant, and ISO 2631-1's integral by brute force."""
 
 import control as ct
 import numpy as np

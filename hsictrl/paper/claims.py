@@ -14,13 +14,13 @@ VERDICTS = {True: "holds", False: "fails", None: "undecided"}
 
 
 def report(recompute: bool, executor: Executor | None) -> Report:
-    """All claims that can be evaluated so far."""
+    """All claims that have a criterion and a finding."""
     drawn = fig4.report(recompute, executor).rows
     findings: dict[str, Callable[[], Finding]] = claims_fig3.FINDINGS | claims_fig4.findings(drawn)
     rows: Rows = [_row(claim, *findings[claim["id"]]()) for claim in _claims()]
     held = sum(row["verdict"] == "holds" for row in rows)
     return Report(name="claims", rows=rows, columns=["id", "where", "says", "measured", "verdict", "reason"],
-                  caption=f"{held} of {len(rows)} claims evaluated so far hold by their criterion")
+                  caption=f"{held} of {len(rows)} claims hold by their criterion")
 
 
 def _row(claim: dict[str, str], measured: str, holds: bool | None, reason: str) -> dict[str, str]:

@@ -24,7 +24,7 @@ def findings(rows: Rows) -> dict[str, Callable[[], Finding]]:
 
 
 def soft_range(rows: Rows) -> Finding:
-    """C06"""
+    """Below 2 Hz people act as added mass."""
     soft = (F_B >= 1.0) & (F_B <= 1.75)
     ratio, gain = _table(rows, "f_ratio_mean")[..., soft], _gain(rows)[..., soft]
     falls = np.all(np.diff(ratio, axis=0) < 0)
@@ -35,7 +35,7 @@ def soft_range(rows: Rows) -> Finding:
 
 
 def middle_range(rows: Rows) -> Finding:
-    """C07"""
+    """Between 2 and 4.5 Hz damping reaches 4–5 % at low mass ratios and passes 10 % at high ones."""
     middle = (F_B >= 2.0) & (F_B <= 4.5)
     tops, least, most = (_table(rows, key)[..., middle].max(axis=2)
                          for key in ("xi_eff_mean", "xi_eff_mean_low", "xi_eff_mean_high"))
@@ -52,7 +52,7 @@ def middle_range(rows: Rows) -> Finding:
 
 
 def stiff_range(rows: Rows) -> Finding:
-    """C08"""
+    """Above 4.5 Hz damping rises less, and f_eff lies slightly above f_B."""
     stiff, middle = F_B >= 4.5, (F_B >= 2.0) & (F_B <= 4.5)
     gain, ratio = _gain(rows), _table(rows, "f_ratio_mean")[..., stiff]
     lower = np.all(gain[..., stiff].max(axis=2) < gain[..., middle].max(axis=2))
@@ -65,7 +65,7 @@ def stiff_range(rows: Rows) -> Finding:
 
 
 def scatter(rows: Rows) -> Finding:
-    """C09"""
+    """f_eff scatters little but where the mode shifts."""
     width = _table(rows, "f_ratio_p95") - _table(rows, "f_ratio_p5")
     outside = (F_B < 3.25) | (F_B > 4.0)
     return (f"5–95 % width of f_eff/f_B up to {width[..., outside].max():.3f} outside 3.25–4 Hz, "
@@ -74,7 +74,7 @@ def scatter(rows: Rows) -> Finding:
 
 
 def best_frequency(rows: Rows) -> Finding:
-    """C10"""
+    """The frequency ratio of the largest damping falls with the mass ratio."""
     best = F_B[np.argmax(_table(rows, "xi_eff_mean"), axis=2)]
     holds = np.all(np.diff(best, axis=0) >= 0) and np.all(best[-1] > best[0])
     return (f"f_B of the largest mean ξ_eff over μ = {', '.join(map(str, MASS_RATIOS))} (by ξ_B): {_listed(best)} Hz",
@@ -82,7 +82,7 @@ def best_frequency(rows: Rows) -> Finding:
 
 
 def relative_growth(rows: Rows) -> Finding:
-    """C11"""
+    """Damping grows relatively faster the lower it is."""
     growth = (_table(rows, "xi_eff_mean") / np.array(DAMPINGS)[None, :, None])[..., F_B > 1.5]
     larger = np.diff(growth, axis=1) < 0
     return (f"ξ_eff/ξ_B falls with ξ_B in {larger.sum()} of {larger.size} comparisons", bool(np.all(larger)),
@@ -90,7 +90,7 @@ def relative_growth(rows: Rows) -> Finding:
 
 
 def number_of_trials(rows: Rows) -> Finding:
-    """C12"""
+    """About 500 trials settle a cell."""
     trials = np.array([row["trials"] for row in rows])
     return (f"{trials.mean():.0f} trials on average over {len(trials)} cells ({trials.min()}–{trials.max()}; the first "
             "look is at 100)", bool(150 <= trials.mean() <= 1500),
@@ -98,7 +98,7 @@ def number_of_trials(rows: Rows) -> Finding:
 
 
 def onset(rows: Rows) -> Finding:
-    """C42"""
+    """Damping rises from lower frequencies on, the lighter and the less damped the bridge."""
     exceeds = _table(rows, "xi_eff_mean") > 1.5 * np.array(DAMPINGS)[None, :, None]
     first = np.where(exceeds.any(axis=2), F_B[np.argmax(exceeds, axis=2)], np.inf)
     holds = np.all(np.diff(first, axis=0) <= 0) and np.all(np.diff(first, axis=1) >= 0)
