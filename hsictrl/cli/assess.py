@@ -111,7 +111,7 @@ def _notes(case: Description, rule: PercentileRule, found: list[assessment.Asses
     percentile = f"{rule.percentile:g}"
     return [
         *tables.case_notes(case),
-        f"a{percentile}: {percentile} % percentile of the peak acceleration. f_eff, ξ_eff: means. "
+        f"a{percentile}: percentile {percentile} of the peak acceleration. f_eff, ξ_eff: means. "
         f"{tables.interval_note(rule)}",
         "MF: moving forces on the empty bridge, without interaction. PMC: moving forces on the bridge with a standing "
         "crowd, with interaction.",
