@@ -70,6 +70,13 @@ def store(thing: Any, **values: Any) -> None:
         object.__setattr__(thing, name, value)
 
 
+def freeze(*values: Any) -> None:
+    """Make arrays read-only; what is no array can't be changed anyway."""
+    for value in values:
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+
+
 def _real(name: str, value: Any, remedy: str) -> Array:
     try:
         array = np.asarray(value)

@@ -238,9 +238,9 @@ def assess(
         PeakTrial(model=model, bridge=bridge, flow=flow, force=force), rule=rule, seed=seed, executor=executor,
         label=f"{flow}, {model}") for model in ("MF", "PMC")}
     found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor)
-    return Assessment(bridge=bridge, flow=flow, effective=found, mf=peaks["MF"], pmc=peaks["PMC"],
-                      guide=guide_value(bridge, flow),
-                      remarks=_remarks(bridge, flow, peaks | {"effective properties": found}))
+    guide = guide_value(bridge, flow)
+    return Assessment(bridge=bridge, flow=flow, effective=found, mf=peaks["MF"], pmc=peaks["PMC"], guide=guide,
+                      remarks=_remarks(bridge, flow, guide, peaks | {"effective properties": found}))
 
 
 def study_effective(
@@ -366,11 +366,13 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
     guide_value(bridge, flow)
 
 
-def _remarks(bridge: Footbridge, flow: CrowdFlow, ensembles: dict[str, Ensemble]) -> tuple[str, ...]:
+def _remarks(
+    bridge: Footbridge, flow: CrowdFlow, guide: DesignResponse, ensembles: dict[str, Ensemble],
+) -> tuple[str, ...]:
     unsettled = tuple(f"{name}: {one.reason}" for name, one in ensembles.items() if not one.converged)
     drawn = flow.sample(bridge, rng=np.random.default_rng(0))
-    silent = () if guide_value(bridge, flow).reduction else (f"{bridge.modes[0].frequency:g} Hz lies outside the range "
-                                                            "for which HiVoSS has a load",)
+    outside = f"{bridge.modes[0].frequency:g} Hz lies outside the range for which HiVoSS has a load"
+    silent = () if guide.reduction else (outside,)
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
     return (*dict.fromkeys(drawn.remarks + tuned), *silent, *unsettled)
 

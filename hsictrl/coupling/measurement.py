@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._names import labels
 from hsictrl.bridge import MeasuredBridge
 from hsictrl.pedestrian import Crowd
 
@@ -63,7 +64,7 @@ class OccupiedMeasurement(ct.FrequencyResponseData):
         self.first_point = closed[:, 0, 0]
         super().__init__(
             np.moveaxis(closed[:, sense][:, :, drive], 0, -1), bridge.response.omega, name=name,
-            inputs=[f"F[{i}]" for i in range(len(drive))], outputs=[f"a[{i}]" for i in range(len(sense))])
+            inputs=labels("F", len(drive)), outputs=labels("a", len(sense)))
 
 
 def _points(bridge: MeasuredBridge, name: str, places: Any) -> NDArray[np.intp]:

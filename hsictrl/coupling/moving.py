@@ -11,6 +11,7 @@ import numpy as np
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._names import labels
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling.occupied import OccupiedBridge, couple
 from hsictrl.crowd import Traffic
@@ -166,7 +167,7 @@ class MovingCrowd:
             lambda t, x, u, params: np.concatenate([x[n_m + n:], rates(t, x, u)]),
             lambda t, x, u, params: sense @ rates(t, x, u)[:n_m],
             inputs=empty.input_labels, outputs=empty.output_labels, name=name,
-            states=[f"{part}[{i}]" for part, size in sizes.items() for i in range(size)])
+            states=[name for part, size in sizes.items() for name in labels(part, size)])
 
 
 def _rates(crowd: MovingCrowd, drive: Array) -> Callable[[float, Array, Array], Array]:

@@ -146,11 +146,11 @@ class OccupiedBridge(ct.StateSpace):
         A = np.zeros((2 * half, 2 * half))
         A[np.arange(half), half + np.arange(half)] = 1.0
         A[half:half + n_m] = acceleration
-        bodies, u, du = half + n_m + np.arange(n), n_m + np.arange(n), half + n_m + np.arange(n)
+        u, du = n_m + np.arange(n), half + n_m + np.arange(n)
         spring, dashpot = people.omega**2, 2 * people.damping * people.omega
         A[half + n_m:, :n_m] = spring[:, None] * rows
         A[half + n_m:, half:half + n_m] = dashpot[:, None] * rows
-        A[bodies, u], A[bodies, du] = -spring, -dashpot
+        A[du, u], A[du, du] = -spring, -dashpot
         push = np.linalg.solve(mass, self._drive.T)
         B = np.zeros((2 * half, len(self._drive)))
         B[half:half + n_m] = push
@@ -282,7 +282,7 @@ class OccupiedBridge(ct.StateSpace):
     def __str__(self) -> str:
         signals = (("Inputs", self.input_labels), ("Outputs", self.output_labels), ("States", self.state_labels))
         return "\n".join([f"<OccupiedBridge> {self.name}: {self.people}", f"on {self.bridge}",
-                          *(f"{kind} ({len(labels)}): {_shortened(labels)}" for kind, labels in signals)])
+                          *(f"{kind} ({len(names)}): {_shortened(names)}" for kind, names in signals)])
 
     def _repr_eval_(self) -> str:
         return f"<OccupiedBridge {self.name}: {self.input_labels} -> {self.output_labels}, {self.nstates} states>"
@@ -315,7 +315,7 @@ def _points(bridge: Footbridge, name: str, places: Any) -> Array:
     return bridge.on_deck(name, check.points(name, antinode if places is None else places, least=1))
 
 
-def _shortened(labels: list[str]) -> str:
-    if len(labels) <= 12:
-        return str(labels)
-    return str(labels[:4])[:-1] + ", …, " + str(labels[-2:])[1:]
+def _shortened(names: list[str]) -> str:
+    if len(names) <= 12:
+        return str(names)
+    return str(names[:4])[:-1] + ", …, " + str(names[-2:])[1:]

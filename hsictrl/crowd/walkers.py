@@ -138,8 +138,9 @@ class Walkers:
         lengths = {name: len(getattr(self, name)) for name in ("bodies", "model", *ARRAYS)}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"walkers' arrays must have the same length, got {lengths}; give one value per walker")
-        check.store(self, forces=tuple(self.forces), model=_read_only(np.array(self.model, dtype=np.intp)),
-                    draws=tuple(_read_only(np.asarray(table)[:]) for table in self.draws))
+        check.store(self, forces=tuple(self.forces), model=np.array(self.model, dtype=np.intp),
+                    draws=tuple(np.asarray(table)[:] for table in self.draws))    # views: a caller's own stay writable
+        check.freeze(self.model, *self.draws)
         self._check_draws()
 
     def _check_draws(self) -> None:
@@ -327,11 +328,6 @@ class Walkers:
 
 
 ARRAYS = ("weight", "step_frequency", "speed", "arrival", "offset")
-
-
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
-    array.flags.writeable = False
-    return array
 
 
 def _draws(force: WalkingForce, n: int, rng: np.random.Generator | None) -> Array:

@@ -12,8 +12,7 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import OccupiedBridge, couple
-from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency
-from hsictrl.crowd.flow import settling_time
+from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency, settling_time
 from hsictrl.prediction.forces import Lines, modal_force
 from hsictrl.prediction.grid import Grid, evenly_spaced
 from hsictrl.prediction.spectral import accelerations

@@ -8,6 +8,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.study.rules import StopRule, judged
 
@@ -40,7 +41,7 @@ class History:
     high: Array
 
     def __post_init__(self) -> None:
-        _freeze(self.trials, self.estimate, self.low, self.high)
+        check.freeze(self.trials, self.estimate, self.low, self.high)
 
 
 @final
@@ -81,7 +82,7 @@ class Ensemble:
     rule: StopRule
 
     def __post_init__(self) -> None:
-        _freeze(self.samples, self.estimate, *self.interval)
+        check.freeze(self.samples, self.estimate, *self.interval)
 
     @property
     def n_trials(self) -> int:
@@ -125,9 +126,3 @@ class Ensemble:
             return list(self.rule.labels)
         columns = range(self.samples.shape[1])
         return [f"{label} of quantity {k}" for k in columns for label in self.rule.labels]
-
-
-def _freeze(*values: float | NDArray) -> None:
-    for value in values:
-        if isinstance(value, np.ndarray):
-            value.flags.writeable = False
