@@ -39,6 +39,18 @@ def numbers(
     return array
 
 
+def even_times(name: str, values: Any) -> Array:
+    """Return `values` as at least two times that increase evenly [s]; refuse anything else."""
+    times = numbers(name, values, ndim=1, remedy="give an evenly spaced array of seconds")
+    if len(times) < 2:
+        raise ValueError(f"{name} must hold at least two times, got {len(times)}; give an array")
+    steps = np.diff(times)
+    if steps[0] <= 0 or np.ptp(steps) > 1e-6 * steps[0]:
+        raise ValueError(f"{name} must increase evenly, got steps from {steps.min():g} to {steps.max():g} s; "
+                         "use numpy.linspace")
+    return times
+
+
 def whole(name: str, value: Any, *, least: int, remedy: str) -> int:
     """Return `value` as an int of at least `least`; refuse anything else."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer):

@@ -260,7 +260,7 @@ class Footbridge:
                              f"got {name}[{i}] = ({places[i, 0]:g}, {places[i, 1]:g}); move it, or leave it out")
         return places
 
-    def participation(self, positions: Any, direction: Any = "vertical") -> Array:
+    def participation(self, positions: Any, direction: Any = "vertical", order: int = 0) -> Array:
         """Rows with which points take part in the modes: mass-normalised shapes, zero off the deck.
 
         Parameters
@@ -269,11 +269,13 @@ class Footbridge:
             Places x, or (x, y) [m].
         direction : str or array of str, shape (n,)
             Direction of the motion at each point, "vertical" or "lateral".
+        order : int
+            Order of a derivative of the shapes along the deck [-].
 
         Returns
         -------
         array, shape (n, n_m)
-            Rows of Φ [1/√kg].
+            Rows of Φ, or of its derivative [1/(√kg m^order)].
 
         Examples
         --------
@@ -288,7 +290,7 @@ class Footbridge:
                              "positions; match them")
         carried = self.carries(positions)
         return np.column_stack([
-            carried * np.where(vertical, mode.shape(x, y, "vertical"), mode.shape(x, y, "lateral"))
+            carried * np.where(vertical, *(mode.shape.derivative(x, y, one, order) for one in check.DIRECTIONS))
             / np.sqrt(mode.modal_mass) for mode in self.modes])
 
     def with_crowd_mass(self, mass: float) -> Footbridge:

@@ -62,6 +62,32 @@ class Shape(ABC):
             The shape, as large as `x` and `y` broadcast [-].
         """
 
+    def derivative(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical", order: int = 1) -> Array:
+        """Return a derivative of the shape along the deck, which convective terms need.
+
+        Parameters
+        ----------
+        x, y, direction
+            As where the shape itself is called.
+        order : int
+            Order of the derivative; 0 is the shape [-].
+
+        Returns
+        -------
+        ndarray
+            As large as `x` and `y` broadcast [1/m^order].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge.shapes import SineShape
+        >>> SineShape(np.pi).derivative([0.0, np.pi / 2, np.pi]).round(12)
+        array([ 1.,  0., -1.])
+        """
+        if check.whole("order", order, least=0, remedy="give 1 or 2") == 0:
+            return self(x, y, direction)
+        raise ValueError(f"convective terms need the derivatives of every shape, got none of {type(self).__name__}; "
+                         "give it a method derivative(x, y, direction, order), or leave convective terms out")
+
     @property
     @abstractmethod
     def antinode(self) -> tuple[float, float]:
@@ -115,6 +141,9 @@ class SineShape(Shape):
     def __call__(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical") -> Array:
         return _evaluated(self, x, y, direction)
 
+    def derivative(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical", order: int = 1) -> Array:
+        return _evaluated(self, x, y, direction, check.whole("order", order, least=0, remedy="give 1 or 2"))
+
     @property
     def antinode(self) -> tuple[float, float]:
         return self.length / (2 * self.number), 0.0
@@ -127,8 +156,14 @@ class SineShape(Shape):
     def mean_absolute(self) -> float:
         return 2 / np.pi
 
-    def _along(self, x: Array) -> Array:
-        return np.sin(self.number * np.pi / self.length * x)
+    @property
+    def wavenumber(self) -> float:
+        """β = jπ/L [1/m]."""
+        return self.number * np.pi / self.length
+
+    def _along(self, x: Array, order: int = 0) -> Array:
+        """φ or one of its derivatives with respect to βx, on the deck."""
+        return np.sin(self.wavenumber * x + order * np.pi / 2)
 
 
 @final
@@ -193,6 +228,9 @@ class BeamShape(Shape):
 
     def __call__(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical") -> Array:
         return _evaluated(self, x, y, direction)
+
+    def derivative(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical", order: int = 1) -> Array:
+        return _evaluated(self, x, y, direction, check.whole("order", order, least=0, remedy="give 1 or 2"))
 
     @property
     def supports(self) -> Array:
@@ -291,13 +329,15 @@ def _checked_ends(ends: tuple[str, str]) -> tuple[str, str]:
     return ends[0], ends[1]
 
 
-def _evaluated(shape: SineShape | BeamShape, x: ArrayLike, y: ArrayLike, direction: Direction) -> Array:
+def _evaluated(
+    shape: SineShape | BeamShape, x: ArrayLike, y: ArrayLike, direction: Direction, order: int = 0,
+) -> Array:
     check.choice("direction", direction, check.DIRECTIONS)
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if direction != shape.direction:
         return np.zeros(np.broadcast_shapes(x.shape, y.shape))
     off = (x < 0) | (x > shape.length)
-    on_deck = np.where(off, 0.0, shape._along(np.clip(x, 0.0, shape.length)))
+    on_deck = np.where(off, 0.0, shape.wavenumber**order * shape._along(np.clip(x, 0.0, shape.length), order))
     return np.broadcast_to(on_deck, np.broadcast_shapes(x.shape, y.shape)).copy()
 
 

@@ -17,7 +17,7 @@ from hsictrl.coupling.occupied import OccupiedBridge, couple
 from hsictrl.crowd import Traffic
 
 
-def moving_crowd(bridge: Footbridge, traffic: Traffic) -> MovingCrowd:
+def moving_crowd(bridge: Footbridge, traffic: Traffic, *, convective: bool = False) -> MovingCrowd:
     """Let people walk over a bridge: the time-varying system of (A.7), by its structure.
 
     Parameters
@@ -26,6 +26,8 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic) -> MovingCrowd:
         The empty bridge.
     traffic : Traffic
         Who walks over it.
+    convective : bool
+        Whether contact points feel that they move along the shapes, see `MovingCrowd`.
 
     Returns
     -------
@@ -43,7 +45,8 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic) -> MovingCrowd:
     """
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
-    return MovingCrowd(bridge=bridge, traffic=traffic)
+    check.instance("convective", convective, bool, "give True or False")
+    return MovingCrowd(bridge=bridge, traffic=traffic, convective=convective)
 
 
 @final
@@ -51,7 +54,8 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic) -> MovingCrowd:
 class MovingCrowd:
     """A bridge with people who walk over it. Made by `moving_crowd`.
 
-    Velocities and accelerations of a contact point are partial derivatives in time, as in (A.1).
+    Velocities and accelerations of a contact point are partial derivatives in time, as in (A.1). With convective
+    terms they are the derivatives of y(t) = φ(vt)·z(t): ẏ = φ·ż + v φ′·z and ÿ = φ·z̈ + 2v φ′·ż + v² φ″·z.
 
     Parameters
     ----------
@@ -59,6 +63,8 @@ class MovingCrowd:
         The empty bridge.
     traffic : Traffic
         Who walks over it.
+    convective : bool
+        Whether contact points feel that they move along the shapes.
 
     Examples
     --------
@@ -73,6 +79,7 @@ class MovingCrowd:
 
     bridge: Footbridge
     traffic: Traffic
+    convective: bool = False
 
     def __str__(self) -> str:
         return f"{self.traffic} on {self.bridge}"
@@ -100,6 +107,40 @@ class MovingCrowd:
         array([[0.]])
         """
         return self.bridge.participation(self.traffic.walkers.places(time), self.traffic.walkers.bodies.direction)
+
+    def row_rates(self, time: float, order: int) -> Array:
+        """Derivatives of `rows` in time that convective terms take; zero where these are left out.
+
+        Parameters
+        ----------
+        time : float
+            The instant [s].
+        order : int
+            Order of the derivative; 0 gives `rows` [-].
+
+        Returns
+        -------
+        array, shape (n, n_m)
+            v^order times the derivatives of the shapes along the deck [1/(√kg s^order)].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.crowd import Walker
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> crowd = moving_crowd(reference_bridge(), Traffic([walker]), convective=True)
+        >>> crowd.row_rates(0.0, 1).round(6)      # 1.25 π/50/√25 t
+        array([[0.000497]])
+        """
+        order = check.whole("order", order, least=0, remedy="give 0, 1 or 2")
+        if order == 0:
+            return self.rows(time)
+        walkers, n_m = self.traffic.walkers, self.bridge.n_modes
+        if not self.convective:
+            return np.zeros((len(walkers), n_m))
+        return walkers.speed[:, None]**order * self.bridge.participation(
+            walkers.places(time), walkers.bodies.direction, order)
 
     def at(self, time: float, *, force_at: Any = None, sense_at: Any = None) -> OccupiedBridge:
         """The system of one instant, as if everybody on the deck stood still.
@@ -172,17 +213,21 @@ class MovingCrowd:
 
 def _rates(crowd: MovingCrowd, drive: Array) -> Callable[[float, Array, Array], Array]:
     """Accelerations of modes and bodies (A.3, A.4) as a function of time, state and further forces."""
-    bridge, people, lines = crowd.bridge, crowd.traffic.walkers.bodies, crowd.traffic.walkers.lines()
+    bridge, walkers = crowd.bridge, crowd.traffic.walkers
+    people, lines = walkers.bodies, walkers.lines()
     n_m, n = bridge.n_modes, len(people)
     gamma, square = 2 * bridge.damping * bridge.omega, bridge.omega**2
+    vertical = bool(np.all(people.direction == "vertical"))
 
     def rates(t: float, x: Array, further: Array) -> Array:
         z, u, dz, du = np.split(x, [n_m, n_m + n, 2 * n_m + n])
-        rows = crowd.rows(t)
-        contact = people.damping_coefficient * (du - rows @ dz) + people.stiffness * (u - rows @ z)
-        modal = rows.T @ (contact + _walking_forces(lines, n, t)) + drive.T @ np.atleast_1d(further)
+        rows, moving, bending = (crowd.row_rates(t, order) for order in range(3))
+        pull = people.damping_coefficient * (du - rows @ dz - moving @ z) + people.stiffness * (u - rows @ z)
+        contact = pull - people.unsprung_mass * (2 * moving @ dz + bending @ z)
+        upright = rows if vertical else bridge.participation(walkers.places(t))     # forces are vertical
+        modal = rows.T @ contact + upright.T @ _walking_forces(lines, n, t) + drive.T @ np.atleast_1d(further)
         mass = np.eye(n_m) + rows.T * people.unsprung_mass @ rows
-        return np.concatenate([np.linalg.solve(mass, modal - gamma * dz - square * z), -contact / people.sprung_mass])
+        return np.concatenate([np.linalg.solve(mass, modal - gamma * dz - square * z), -pull / people.sprung_mass])
 
     return rates
 

@@ -7,7 +7,6 @@ from typing import Any, final
 
 import numpy as np
 
-from hsictrl import _checks as check
 from hsictrl._checks import Array
 
 FORCE_MARGIN, MODE_MARGIN = 2.5, 6.0     # samples per period of the highest force line, and of the highest mode
@@ -106,15 +105,3 @@ class Grid:
 def _limit(highest_force: float, highest_mode: float) -> float:
     """Longest step that resolves forces and modes [s]."""
     return 1 / max(FORCE_MARGIN * highest_force, MODE_MARGIN * highest_mode, 1 / LONGEST_STEP)
-
-
-def evenly_spaced(timepts: Any) -> Array:
-    """Check the times that a caller wants [s]."""
-    times = check.numbers("timepts", timepts, ndim=1, remedy="give an evenly spaced array of seconds")
-    if len(times) < 2:
-        raise ValueError(f"timepts must hold at least two times, got {len(times)}; give an array")
-    steps = np.diff(times)
-    if steps[0] <= 0 or np.ptp(steps) > 1e-6 * steps[0]:
-        raise ValueError(f"timepts must increase evenly, got steps from {steps.min():g} to {steps.max():g} s; "
-                         "use numpy.linspace")
-    return times

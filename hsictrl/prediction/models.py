@@ -14,7 +14,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.coupling import OccupiedBridge, couple
 from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency, settling_time
 from hsictrl.prediction.forces import Lines, modal_force
-from hsictrl.prediction.grid import Grid, evenly_spaced
+from hsictrl.prediction.grid import Grid
 from hsictrl.prediction.spectral import accelerations
 from hsictrl.prediction.steady import steady_accelerations
 from hsictrl.resonance import EffectiveProperties, effective
@@ -153,7 +153,7 @@ def _predicted(
 ) -> Prediction:
     """Response of a system whose resonances are known."""
     window = traffic.observed(system.bridge)
-    times = None if timepts is None else _within(traffic, window, evenly_spaced(timepts))
+    times = None if timepts is None else _within(traffic, window, check.even_times("timepts", timepts))
     if warm_up is not None:
         check.number("warm_up", warm_up, least=0, remedy="give s")
     if system.name == "SF":

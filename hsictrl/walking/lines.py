@@ -160,6 +160,25 @@ class ForceLines:
             samples[block] = _read(_tables(self.coefficients[block], self._indices), cycles)
         return samples
 
+    def tables(self) -> Array:
+        """Tabulate one period of each walker's force, for readers of their own.
+
+        Returns
+        -------
+        array, shape (n, size + 4)
+            Cubic B-spline coefficients over six at `size` even places of the period that begins at t = 0, which
+            repeats after 1/(spacing · step_frequency); one more in front and three more at the end, so that the
+            four at place i stand in columns i to i + 3 [N].
+
+        Examples
+        --------
+        >>> force = ForceLines(coefficients=[[301.0]], first=1, spacing=1.0, step_frequency=[2.0])
+        >>> table = force.tables()
+        >>> table.shape, float((table[0, 0] + 4 * table[0, 1] + table[0, 2]).round(9))    # F(0)
+        ((1, 1028), 301.0)
+        """
+        return _tables(self.coefficients, self._indices)
+
     @property
     def _indices(self) -> Whole:
         return np.arange(self.first, self.first + self.coefficients.shape[1])
@@ -184,10 +203,10 @@ def _read(table: Array, cycles: Array) -> Array:
     place -= knot
     knot += table.shape[1] * np.arange(len(table))[:, np.newaxis]
     a, b, c, d = (table.ravel()[tap:].take(knot) for tap in range(4))
-    return _spline(a, b, c, d, place)
+    return spline(a, b, c, d, place)
 
 
-def _spline(a: Array, b: Array, c: Array, d: Array, x: Array) -> Array:
+def spline(a: Array, b: Array, c: Array, d: Array, x: Array) -> Array:
     """Six times the cubic B-spline at x in [0, 1) between the knots of b and c, by Horner's rule."""
     value = d - a + 3 * (b - c)
     value *= x
