@@ -284,7 +284,7 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("effective --tolerance 0", "tolerance must lie in (0, 1), got 0; give a fraction, not percent"),
     ("effective --json --csv", "the output must have one form"),
     ("effective --processes -2", "processes must be at least 1, got -2"),
-    ("paper fig99", "name must be one of 'fig3', 'fig4', 'claims', got 'fig99'; choose one of these"),
+    ("paper fig99", "name must be one of 'table1', 'fig1', 'fig2', 'fig3', 'fig4', 'claims', got 'fig99'; choose"),
     ("paper fig3 --output TMP/no", "the output folder must exist, got TMP/no; make it first"),
     ("paper fig3 --processes 0", "processes must be at least 1, got 0"),
 ])

@@ -1,19 +1,29 @@
-"""The paper redrawn: figures 3 and 4 by second roads, and claims that can fail."""
+"""The paper redrawn: table 1 as printed, figures by second roads, and claims that can fail."""
 
 from __future__ import annotations
 
 import copy
 import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import control as ct
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 
 import hsictrl as hsi
 from hsictrl import paper
-from hsictrl.paper import claims_fig3, claims_fig4, fig3, fig4
+from hsictrl.paper import claims_fig3, claims_fig4, fig2, fig3, fig4, table1
 from hsictrl.paper.reports import Rows, committed
+from hsictrl.prediction import ASSUMPTIONS
 
 PAPER = Path(claims_fig3.__file__).parent
 
@@ -21,6 +31,113 @@ PAPER = Path(claims_fig3.__file__).parent
 @pytest.fixture(scope="module")
 def rows() -> Rows:
     return committed("fig4")
+
+
+@pytest.fixture
+def closed() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+# Table 1 as printed, with order and type as printed in Table 2: abbreviation, name, fixed-driver term, interaction,
+# n_s, time-variant; and the order for one mode and 15 persons, by hand.
+PRINTED = [
+    ("SF", "Stationary force model", "stationary", "disregarded", "2n_m", "No", 2),
+    ("MF", "Moving force model", "moving", "disregarded", "2n_m", "No", 2),
+    ("MFAM", "Moving force model with added mass", "moving", "uniformly distributed crowd mass", "2n_m", "No", 2),
+    ("PMC", "Pseudo moving crowd model", "moving", "stationary human body models", "2(n_m+n_H)", "No", 32),
+    ("MC", "Moving crowd model", "moving", "moving human body models", "2(n_m+n_H)", "Yes", 32),
+]
+
+
+def test_table1_is_as_printed_and_its_systems_are_as_large_as_it_says() -> None:
+    report = paper.compute("table1")
+    found = [(row["model"], row["name"].capitalize(), row["fixed_driver"], row["interaction"],
+              row["order"].replace(" ", ""), "Yes" if row["time_variant"] else "No", row["order_found"])
+             for row in report.rows]
+    assert found == PRINTED
+    assert [row["time_variant_found"] for row in report.rows] == [False, False, False, False, True]
+    assert {(row["modes"], row["persons_on_deck"]) for row in report.rows} == {(1, 15)}
+    assert report.draw is None
+
+
+@pytest.mark.parametrize(("model", "order"), [("SF", 4), ("MF", 4), ("MFAM", 4), ("PMC", 10), ("MC", 10)])
+def test_table1_counts_modes_and_people(model: str, order: int) -> None:
+    """Two modes and three persons by hand: 2 · 2 and 2 · (2 + 3)."""
+    bridge = hsi.Footbridge.simply_supported(length=30.0, width=2.0, mass=30e3, frequency=3.0, damping=0.01, n_modes=2)
+    assert table1.found(model, bridge, table1.traffic(bridge, 3)) == (order, model == "MC")
+
+
+def test_table1_walkers_are_on_the_deck_together() -> None:
+    """At x = (i + ½)L/n in the middle of the window, n = 5 and L = 50 m: 5, 15, …; nobody else comes."""
+    bridge = hsi.reference_bridge()
+    walkers = table1.traffic(bridge, 5)
+    people, places = walkers.standing_on(bridge)
+    assert (len(people), len(walkers.walkers)) == (5, 5)
+    assert sorted(places[:, 0]) == pytest.approx([5.0, 15.0, 25.0, 35.0, 45.0])
+
+
+def test_fig1_bodies_by_closed_form() -> None:
+    """k = (2πf)² m and c = 2 ξ 2πf m with 66.5 kg of 70 kg sprung at 3.25 Hz and 30 % (section 2.2)."""
+    for row, x in zip(paper.compute("fig1").rows, (9.0, 25.0, 41.0), strict=True):      # 1.25 m/s (36 s - t_a)
+        assert row["x_m"] == pytest.approx(x)
+        assert (row["m_h1_kg"], row["m_h0_kg"]) == pytest.approx((66.5, 3.5))
+        assert row["k_h1_n_per_m"] == pytest.approx((2 * np.pi * 3.25)**2 * 66.5)
+        assert row["c_h1_ns_per_m"] == pytest.approx(2 * 0.3 * 2 * np.pi * 3.25 * 66.5)
+
+
+def symbols(ax: Axes, gid: str) -> list[Artist]:
+    return ax.findobj(lambda artist: artist.get_gid() == gid)
+
+
+@pytest.mark.usefixtures("closed")
+def test_fig1_is_drawn_from_its_rows() -> None:
+    report = paper.compute("fig1")
+    body, contact, *_ = report.draw().axes.flat
+    assert [one.xyann[0] for one in symbols(contact, "force")] == pytest.approx([row["x_m"] for row in report.rows])
+    assert {r"$m_{H1}$ = 66.5 kg", r"$k_{H1}$ = 27.7 kN/m", r"$c_{H1}$ = 815 N s/m"} <= {
+        text.get_text() for text in body.texts}
+
+
+@pytest.mark.parametrize("index", range(5))
+def test_fig2_shows_what_the_systems_hold(index: int) -> None:
+    """Bodies and added mass read from the system that each model solves, not from what it is said to assume."""
+    row = paper.compute("fig2").rows[index]
+    if row["model"] == "MC":
+        empty, system = fig2.BRIDGE, hsi.moving_crowd(fig2.BRIDGE, fig2.WALKERS).at(fig2.TIME)
+    else:
+        empty, system = fig2.BRIDGE, hsi.predict(row["model"], fig2.BRIDGE, fig2.WALKERS).system
+    assert row["bodies_at_m"] == pytest.approx(system.positions[:, 0].tolist())
+    assert row["added_mass_kg"] == pytest.approx(system.bridge.mass - empty.mass)
+    assert row["bodies_move"] == table1.found(row["model"], fig2.BRIDGE, fig2.WALKERS)[1]
+
+
+def test_fig2_forces_that_move_are_elsewhere_than_those_that_stay() -> None:
+    """Four walkers at 1.25 m/s: at x = (i + ½) 12.5 m in the middle of the window, 35 s, and 3.75 m further at 38 s."""
+    standing = [6.25, 18.75, 31.25, 43.75]
+    places = {row["model"]: sorted(row["forces_at_m"]) for row in paper.compute("fig2").rows}
+    assert places["SF"] == pytest.approx(standing)
+    for model in ("MF", "MFAM", "PMC", "MC"):
+        assert places[model] == pytest.approx([x + 3.75 for x in standing])
+
+
+@pytest.mark.usefixtures("closed")
+def test_fig2_panels_carry_their_assumptions() -> None:
+    plot = paper.compute("fig2").draw()
+    titles = [ax.get_title("left") for ax in plot.axes.flat]
+    assert titles[2] == "(c) MFAM: moving force model with added mass\n$n_s = 2 n_m$, time-invariant"
+    assert titles[4] == "(e) MC: moving crowd model\n$n_s = 2(n_m + n_H)$, time-variant"
+    counts = [[len(symbols(ax, gid)) for gid in ("force", "force motion", "added mass", "spring", "body motion")]
+              for ax in plot.axes.flat]
+    assert counts == [[4, 0, 0, 0, 0], [4, 4, 0, 0, 0], [4, 4, 1, 0, 0], [4, 4, 0, 4, 0], [4, 4, 0, 4, 4], [0] * 5]
+
+
+def test_fig2_follows_the_assumptions() -> None:
+    """An imaginary model of stationary forces among moving bodies."""
+    imaginary = replace(ASSUMPTIONS["MC"], fixed_driver="stationary")
+    found = fig2.scene(imaginary, fig2.BRIDGE, fig2.WALKERS, fig2.TIME)
+    assert (found["forces_move"], found["bodies_move"]) == (False, True)
+    assert np.subtract(found["bodies_at_m"], found["forces_at_m"]) == pytest.approx([3.75] * 4)
 
 
 @pytest.mark.parametrize(("mass_ratio", "persons"), [(0.1, 71), (0.4, 286)])
@@ -124,5 +241,6 @@ def test_added_mass_of_a_soft_bridge_by_hand() -> None:
 
 
 def test_unknown_names_are_refused() -> None:
-    with pytest.raises(ValueError, match="name must be one of 'fig3', 'fig4', 'claims', got 'fig99'; choose one"):
+    with pytest.raises(ValueError, match=r"name must be one of 'table1', 'fig1', 'fig2', 'fig3', 'fig4', 'claims', "
+                                         r"got 'fig99'; choose one"):
         paper.compute("fig99")

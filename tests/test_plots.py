@@ -1,6 +1,7 @@
 """Asserted on the data that is drawn, not on images; truth is what went in."""
 
 from collections.abc import Iterator
+from itertools import combinations
 
 import control as ct
 import matplotlib
@@ -10,16 +11,19 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 import hsictrl as hsi
 from hsictrl.plots import (
     assessment_figure,
+    contact_force_plot,
     convergence_plot,
     effective_map_plot,
     effective_panels,
     frf_plot,
+    models_plot,
     normalised_frf_plot,
     response_plot,
 )
@@ -355,3 +359,123 @@ def test_effective_map_refusals() -> None:
         effective_map_plot([1.0], {})
     with pytest.raises(ValueError, match="ax must hold 2 axes, got 1; make them with"):
         effective_map_plot(HERTZ, MAP, ax=plt.subplots()[1])
+
+
+# schematics
+
+STEADY = hsi.HarmonicForce([0.4])
+WALKERS = hsi.Traffic([hsi.Walker(force=STEADY, step_frequency=2.0, speed=1.0, arrival=arrival,
+                                  body=hsi.Pedestrian(mass=80.0, frequency=2.0, sprung_ratio=0.9))
+                       for arrival in (0.0, 10.0, 30.0, 70.0)])
+PRESENT = [40.0, 30.0, 10.0]    # at 40 s, by hand: x = 1 m/s (t - t_a), and the last has not arrived
+SCENES = {"one": {"forces_at_m": [10.0, 20.0], "forces_move": False, "added_mass_kg": 140.0, "bodies_at_m": [],
+                  "bodies_move": False},
+          "two": {"forces_at_m": [10.0, 20.0], "forces_move": True, "added_mass_kg": 0.0, "bodies_at_m": [5.0],
+                  "bodies_move": False},
+          "three": {"forces_at_m": [], "forces_move": True, "added_mass_kg": 0.0, "bodies_at_m": [5.0, 30.0],
+                    "bodies_move": True}}
+SCHEMATICS = {"contact force": lambda ax=None: contact_force_plot(BRIDGE, WALKERS, time=40.0, ax=ax),
+              "models": lambda ax=None: models_plot(BRIDGE, SCENES, ax=ax)}
+
+
+def drawn(ax: Axes, gid: str) -> list[Artist]:
+    return ax.findobj(lambda artist: artist.get_gid() == gid)
+
+
+def points_at(ax: Axes, gid: str) -> list[float]:
+    """Places along the deck from which arrows hang, or the middles of symbols."""
+    return [float(one.xyann[0]) if hasattr(one, "xyann") else float(np.nanmean([np.nanmin(one.get_xdata()),
+            np.nanmax(one.get_xdata())])) for one in drawn(ax, gid)]
+
+
+@pytest.mark.parametrize("name", SCHEMATICS)
+def test_schematics_are_drawn_on_given_axes_or_on_one_figure(name: str) -> None:
+    plot = SCHEMATICS[name]()
+    assert plt.get_fignums() == [plot.figure.number]
+    assert plot.axes.shape == plot.lines.shape == plot.legend.shape == (2, 2)
+    figure, axes = plt.subplots(2, 2)
+    assert SCHEMATICS[name](axes).axes.tolist() == axes.tolist()
+    assert plt.get_fignums() == [plot.figure.number, figure.number]
+
+
+@pytest.mark.parametrize("name", SCHEMATICS)
+def test_words_of_schematics_do_not_meet_and_lie_within_the_figure(name: str) -> None:
+    plot = SCHEMATICS[name]()
+    plot.figure.canvas.draw()
+    boxes = [text.get_window_extent() for ax in plot.axes.flat for text in [*ax.texts, ax._left_title]
+             if text.get_text()]
+    assert len(boxes) >= 4
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+    assert all(plot.figure.bbox.count_contains(box.corners()) == 4 for box in boxes)
+
+
+def test_the_deck_is_the_first_mode_downwards() -> None:
+    for ax in contact_force_plot(BRIDGE, WALKERS, time=40.0).axes.flat[1:]:
+        x, y = drawn(ax, "deck")[0].get_data()
+        assert (x[0], x[-1]) == (0.0, 50.0)
+        np.testing.assert_allclose(y / y.min(), np.sin(np.pi * x / 50.0), atol=1e-12)
+
+
+def test_contact_forces_stand_where_the_walkers_are() -> None:
+    _, contact, driver, interaction = contact_force_plot(BRIDGE, WALKERS, time=40.0).axes.flat
+    for ax, gid in ((contact, "person"), (contact, "force"), (driver, "force"), (driver, "trace"),
+                    (interaction, "force")):
+        assert points_at(ax, gid) == pytest.approx(PRESENT)
+    assert len(drawn(interaction, "spring")) == len(drawn(interaction, "damper")) == 3
+    assert not drawn(driver, "spring")
+    for ax in (contact, driver, interaction):
+        assert len(drawn(ax, "motion")) == 3
+        assert all(one.xy[1] < one.xyann[1] for one in drawn(ax, "force"))    # downwards
+        assert all(one.xy[0] > one.xyann[0] for one in drawn(ax, "motion"))    # onwards
+
+
+def test_traces_are_the_walking_forces_to_the_scale_that_is_shown() -> None:
+    """0.4 · 700 N cos(2π 2 t) for 0.75 s before and after 40 s, when 40 s is a whole number of steps."""
+    ax = contact_force_plot(BRIDGE, WALKERS, time=40.0).axes[1, 0]
+    bars = drawn(ax, "scale")[0].get_data()
+    assert {"500 N", "0.5 s"} <= {text.get_text() for text in ax.texts}
+    seconds, newtons = 0.5 / np.ptp(bars[0]), 500.0 / np.ptp(bars[1])
+    x, y = drawn(ax, "trace")[0].get_data()
+    times = (x - PRESENT[0]) * seconds
+    assert (times[0], times[-1]) == pytest.approx((-0.75, 0.75))
+    np.testing.assert_allclose((y - drawn(ax, "zero")[0].get_ydata()[0]) * newtons,
+                               280.0 * np.cos(2 * np.pi * 2.0 * times), atol=1e-9)
+
+
+def test_the_body_carries_its_numbers() -> None:
+    """By hand: m_H1 = 0.9 · 80 kg, k = (2π 2 Hz)² 72 kg = 11370 N/m, c = 2 · 0.3 · 72 kg · 2π 2 Hz = 543 N s/m."""
+    words = [text.get_text() for text in contact_force_plot(BRIDGE, WALKERS, time=40.0).axes[0, 0].texts]
+    assert {r"$m_{H1}$ = 72.0 kg", r"$m_{H0}$ = 8.0 kg", r"$k_{H1}$ = 11.4 kN/m", r"$c_{H1}$ = 543 N s/m",
+            r"$f_{H1}$ = 2.00 Hz, $\xi_{H1}$ = 30 %"} <= set(words)
+
+
+def test_models_are_drawn_as_their_scenes_say() -> None:
+    plot = models_plot(BRIDGE, SCENES)
+    for ax, scene in zip(plot.axes.flat, SCENES.values(), strict=False):
+        assert points_at(ax, "force") == scene["forces_at_m"]
+        assert points_at(ax, "damper") == pytest.approx([x + 3 * 0.25 for x in scene["bodies_at_m"]])
+        assert len(drawn(ax, "force motion")) == scene["forces_move"] * len(scene["forces_at_m"])
+        assert len(drawn(ax, "body motion")) == scene["bodies_move"] * len(scene["bodies_at_m"])
+        assert [band.get_hatch() for band in drawn(ax, "added mass")] == ["////"] * bool(scene["added_mass_kg"])
+    assert [text.get_text() for text in plot.axes[0, 0].texts if text.get_text()] == ["140 kg"]
+    assert [ax.get_title("left") for ax in plot.axes.flat] == ["(a) one", "(b) two", "(c) three", ""]
+    assert len(plot.legend[1, 1].get_texts()) == 4
+
+
+def test_schematic_refusals() -> None:
+    with pytest.raises(ValueError, match="time must be an instant with somebody on the deck, got 200 s; choose"):
+        contact_force_plot(BRIDGE, WALKERS, time=200.0)
+    with pytest.raises(TypeError, match="traffic must be of type Traffic, got list; make it with"):
+        contact_force_plot(BRIDGE, [], time=0.0)
+    with pytest.raises(TypeError, match="bridge must be of type Footbridge, got str; describe"):
+        models_plot("bridge", SCENES)
+    with pytest.raises(ValueError, match="panels must hold at least one panel, got none; give"):
+        models_plot(BRIDGE, {})
+    with pytest.raises(ValueError, match=r"panels\['a'\] must hold 'forces_at_m', .*got no 'forces_at_m'; give all"):
+        models_plot(BRIDGE, {"a": {}})
+    with pytest.raises(ValueError, match=r"panels\['a'\]\['bodies_at_m'\] must lie on the deck, .* got .*60"):
+        models_plot(BRIDGE, {"a": SCENES["one"] | {"bodies_at_m": [60.0]}})
+    with pytest.raises(ValueError, match=r"panels\['a'\]\['added_mass_kg'\] must be at least 0, got -1; give kg"):
+        models_plot(BRIDGE, {"a": SCENES["one"] | {"added_mass_kg": -1.0}})
+    with pytest.raises(ValueError, match="ax must hold 4 axes, got 1; make them with"):
+        models_plot(BRIDGE, SCENES, ax=plt.subplots()[1])

@@ -1,4 +1,4 @@
-"""``hsictrl paper``: figures and claims of the paper."""
+"""``hsictrl paper``: tables, figures and claims of the paper."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
 
 
 def paper(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="fig3, fig4 or claims.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="table1, fig1, fig2, fig3, fig4 or claims.")],
     recompute: Annotated[bool, typer.Option("--recompute", help="Compute anew, not from committed results.")] = False,
     processes: options.Processes = 1,
     output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where the figure and its numbers go.")] = Path(),
     as_json: options.AsJson = False,
 ) -> None:
-    """Figures and claims of Van Nimmen et al. (2017).
+    """Tables, figures and claims of Van Nimmen et al. (2017).
 
-    A figure is written as NAME.png and its numbers as NAME.json; these, or the claims, are printed as a table.
+    A figure is written as NAME.png and its numbers as NAME.json; these, tables and claims are printed.
 
     Exit code: 0 when it worked, 1 when a trial failed, 2 for bad input, 130 when interrupted.
     """

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 
 from hsictrl import _checks as check
-from hsictrl.paper import claims, fig3, fig4
+from hsictrl.paper import claims, fig1, fig2, fig3, fig4, table1
 from hsictrl.paper.reports import Report
 
 RECIPES: dict[str, Callable[[bool, Executor | None], Report]] = {
-    "fig3": fig3.report, "fig4": fig4.report, "claims": claims.report}
+    "table1": table1.report, "fig1": fig1.report, "fig2": fig2.report, "fig3": fig3.report, "fig4": fig4.report,
+    "claims": claims.report}
 
 
 def names() -> tuple[str, ...]:
@@ -23,13 +24,13 @@ def names() -> tuple[str, ...]:
     Examples
     --------
     >>> names()
-    ('fig3', 'fig4', 'claims')
+    ('table1', 'fig1', 'fig2', 'fig3', 'fig4', 'claims')
     """
     return tuple(RECIPES)
 
 
 def compute(name: str, *, recompute: bool = False, executor: Executor | None = None) -> Report:
-    """Reproduce a figure of the paper, or evaluate its claims.
+    """Reproduce a table or figure of the paper, or evaluate its claims.
 
     Parameters
     ----------

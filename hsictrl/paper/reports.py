@@ -23,7 +23,7 @@ class Report:
     Parameters
     ----------
     name : str
-        What was asked for, "fig3" and so on.
+        What was asked for, "table1", "fig3" and so on.
     rows : list of dict
         The numbers, ready for JSON, with units in the keys.
     columns : list of str

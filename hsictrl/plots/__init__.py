@@ -12,8 +12,9 @@ from hsictrl.plots.effective_map import effective_map_plot, effective_panels
 from hsictrl.plots.files import file_endings, save
 from hsictrl.plots.frequency import frf_plot, normalised_frf_plot
 from hsictrl.plots.history import response_plot
+from hsictrl.plots.schematic import contact_force_plot, models_plot
 
 __all__ = [
-    "assessment_figure", "convergence_plot", "effective_map_plot", "effective_panels", "file_endings", "frf_plot",
-    "normalised_frf_plot", "response_plot", "save",
+    "assessment_figure", "contact_force_plot", "convergence_plot", "effective_map_plot", "effective_panels",
+    "file_endings", "frf_plot", "models_plot", "normalised_frf_plot", "response_plot", "save",
 ]
