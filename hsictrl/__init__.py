@@ -19,6 +19,7 @@ from hsictrl.resonance import (
     effective_sensitivity,
     frf,
 )
+from hsictrl.stepper import Simulation, simulate
 from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule, monte_carlo, trial_rng
 from hsictrl.walking import ForceLines, HarmonicForce, MainHarmonics, WalkingForce, YoungForce, ZivanovicForce
 
@@ -28,8 +29,8 @@ __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
     "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode",
     "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction",
-    "Shape", "SineShape", "StopRule", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce",
+    "Shape", "Simulation", "SineShape", "StopRule", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce",
     "assess", "comfort_class", "couple", "design_acceleration", "effective", "effective_map", "effective_sensitivity",
     "en1990_limit", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict",
-    "reference_bridge", "resonant_step_frequency", "study_effective", "trial_rng", "tune", "weidmann_speed",
+    "reference_bridge", "resonant_step_frequency", "simulate", "study_effective", "trial_rng", "tune", "weidmann_speed",
 ]

@@ -349,7 +349,7 @@ def test_weights_multiply(model):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_the_order_is_the_one_of_table_2(model):
-    system = predict(model, beam(), Traffic([walker()], standing=at(10.0, 20.0))).system
+    system = predict(model, beam(), Traffic([walker(), walker()], standing=at(10.0, 20.0))).system
     assert system.nstates == {"2 n_m": 2 * 3, "2(n_m + n_H)": 2 * (3 + 2)}[ASSUMPTIONS[model].order]
 
 

@@ -84,6 +84,21 @@ class MovingCrowd:
     def __str__(self) -> str:
         return f"{self.traffic} on {self.bridge}"
 
+    @property
+    def nstates(self) -> int:
+        """Order 2(n_m + n_H) of the system, everybody in the traffic counted [-].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.crowd import Walker
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
+        >>> moving_crowd(reference_bridge(), Traffic([walker])).nstates
+        4
+        """
+        return 2 * (self.bridge.n_modes + len(self.traffic.walkers))
+
     def rows(self, time: float) -> Array:
         """Participation of every walker in the modes at an instant, zero for those off the deck.
 

@@ -1,4 +1,4 @@
-"""The time-invariant models of section 2.4: recipes that differ in the system, or in whether the forces move."""
+"""The five models (Table 1): recipes that differ in the system, or in whether forces and bodies move."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ import numpy as np
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
-from hsictrl.coupling import OccupiedBridge, couple
+from hsictrl.coupling import MovingCrowd, OccupiedBridge, couple, moving_crowd
 from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency, settling_time
 from hsictrl.prediction.forces import Lines, modal_force
 from hsictrl.prediction.grid import Grid
 from hsictrl.prediction.spectral import accelerations
 from hsictrl.prediction.steady import steady_accelerations
 from hsictrl.resonance import EffectiveProperties, effective
+from hsictrl.stepper import TOLERANCE, simulate
 
-MODELS = ("SF", "MF", "MFAM", "PMC")
+MODELS = ("SF", "MF", "MFAM", "PMC", "MC")
 Resonances = list[EffectiveProperties | None]
 
 
@@ -34,11 +35,14 @@ class Prediction:
         Name of the model.
     response : control.TimeResponseData
         Acceleration at the antinode of the first mode, or at `sense_at`, over the observed window [m/s², s].
-    system : OccupiedBridge
-        The time-invariant system that responds: the empty bridge for SF and MF, the one that carries the
-        crowd's mass for MFAM, the occupied one for PMC.
+    system : OccupiedBridge or MovingCrowd
+        The system that responds: the empty bridge for SF and MF, the one that carries the crowd's mass for
+        MFAM, the occupied one for PMC, the time-varying one for MC.
     remarks : tuple of str
         What a reader of the numbers should know.
+    error : float, optional
+        Estimated error of MC's accelerations, the largest over the window relative to their peak; the other models
+        take no steps in time [-].
 
     Examples
     --------
@@ -52,8 +56,9 @@ class Prediction:
 
     model: str
     response: ct.TimeResponseData
-    system: OccupiedBridge
+    system: OccupiedBridge | MovingCrowd
     remarks: tuple[str, ...]
+    error: float | None = None
 
     def __str__(self) -> str:
         return f"{self.model}: {self.peak_acceleration:.3f} m/s²"
@@ -70,24 +75,25 @@ def predict(
 ) -> Prediction:
     """Predict the acceleration under traffic; step frequencies stay as they are (see `tune`).
 
-    All models are time-invariant systems. Three of them stand under forces that move, and are solved in the
+    Four models are time-invariant systems. Three of them stand under forces that move, and are solved in the
     frequency domain: the modal forces are sampled, and divided by the condensed dynamic stiffness. "MF" takes
     the empty bridge (eq. 12); "MFAM" the bridge loaded evenly with the mass of the standing crowd, its damping
     ratios and shapes kept (`Footbridge.with_crowd_mass`); "PMC" the bridge with that crowd on it (eq. 11).
     "SF" is the steady state of the empty bridge under walkers who step in place without intra-person
-    variability (`Traffic.stopped_on`, `WalkingForce.periodic`).
+    variability (`Traffic.stopped_on`, `WalkingForce.periodic`). "MC" varies in time: bodies walk with their
+    forces (eq. 5), and the system is stepped (`simulate`).
 
     Parameters
     ----------
-    model : {"SF", "MF", "MFAM", "PMC"}
-        Stationary force, moving force, moving force with added mass, or pseudo-moving crowd model.
+    model : {"SF", "MF", "MFAM", "PMC", "MC"}
+        Stationary force, moving force, moving force with added mass, pseudo-moving crowd, or moving crowd model.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
         Who walks over it.
     timepts : array_like, shape (m,), optional
         Evenly spaced times at which the response is given; over the observed window, at least 40 per period
-        of the highest mode, if not given. Forces are sampled at the given times at least, so that a finer step
+        of the highest mode (25 for "MC"), if not given. Forces are sampled at the given times at least, so that a finer step
         resolves better how walkers step on and off [s].
     sense_at : array_like, shape (p,) or (p, 2), optional
         Where accelerations are read; at the first mode's antinode if not given [m].
@@ -111,6 +117,7 @@ def predict(
     MF: 6.792 m/s²
     MFAM: 3.941 m/s²
     PMC: 1.625 m/s²
+    MC: 1.614 m/s²
     """
     system = _system(model, bridge, traffic, sense_at)
     return _predicted(system, _resonances(system), traffic, timepts, warm_up)
@@ -121,7 +128,7 @@ def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Predictio
 
     Parameters
     ----------
-    model : {"SF", "MF", "MFAM", "PMC"}
+    model : {"SF", "MF", "MFAM", "PMC", "MC"}
         As in `predict`.
     bridge : Footbridge
         The empty bridge.
@@ -159,7 +166,19 @@ def _predicted(
     if system.name == "SF":
         return _steady(system, traffic, window, times)
     decay = _slowest_decay(system, found)
-    return _moving(system, _relevant(traffic, system.bridge, decay, window, warm_up), window, times, decay)
+    relevant = _relevant(traffic, system.bridge, decay, window, warm_up)
+    if system.name == "MC":
+        return _stepped(system, relevant, times)
+    return _moving(system, relevant, window, times, decay)
+
+
+def _stepped(system: OccupiedBridge, traffic: Traffic, times: Array | None) -> Prediction:
+    """Moving bodies and forces, step by step."""
+    crowd = moving_crowd(system.bridge, traffic)
+    found = simulate(crowd, times, sense_at=system.sense_at)
+    coarse = () if found.error <= TOLERANCE else (f"the estimated error is {found.error:.1g} of the peak",)
+    return Prediction(model="MC", system=crowd, remarks=traffic.remarks + coarse, error=found.error,
+                      response=_response(system, found.response.time, found.response.y))
 
 
 def _moving(
@@ -186,9 +205,13 @@ def _steady(
 
 
 def _prediction(system: OccupiedBridge, times: Array, response: Array, remarks: tuple[str, ...]) -> Prediction:
-    return Prediction(model=system.name, system=system, remarks=remarks, response=ct.TimeResponseData(
+    return Prediction(model=system.name, system=system, remarks=remarks, response=_response(system, times, response))
+
+
+def _response(system: OccupiedBridge, times: Array, response: Array) -> ct.TimeResponseData:
+    return ct.TimeResponseData(
         times, response, output_labels=system.output_labels, issiso=len(response) == 1,
-        plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration"))
+        plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration")
 
 
 def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
@@ -196,9 +219,9 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
 
     Parameters
     ----------
-    model : {"SF", "MF", "MFAM", "PMC"}
+    model : {"SF", "MF", "MFAM", "PMC", "MC"}
         "SF" and "MF" meet the empty bridge's first mode, "MFAM" that of the bridge with the mass of this
-        traffic's standing crowd, "PMC" the effective frequency of the bridge with that crowd.
+        traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
@@ -217,7 +240,7 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     >>> bridge = reference_bridge(frequency=2.0)
     >>> traffic = CrowdFlow(density=1.0).sample(bridge, rng=np.random.default_rng(1))
     >>> [round(tune(model, bridge, traffic).target, 3) for model in MODELS]
-    [2.0, 2.0, 1.818, 1.754]
+    [2.0, 2.0, 1.818, 1.754, 1.754]
     """
     system = _system(model, bridge, traffic, None)
     return _tuned(traffic, system, [effective(system)] if len(system.people) else [])

@@ -1,5 +1,5 @@
 """Advances the time-varying system of a moving crowd."""
 
-from hsictrl.stepper.simulation import Simulation, simulate
+from hsictrl.stepper.simulation import TOLERANCE, Simulation, simulate
 
-__all__ = ["Simulation", "simulate"]
+__all__ = ["TOLERANCE", "Simulation", "simulate"]

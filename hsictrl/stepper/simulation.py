@@ -48,6 +48,7 @@ class Simulation:
     >>> from hsictrl.walking import HarmonicForce
     >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
     >>> print(simulate(moving_crowd(reference_bridge(frequency=2.0), Traffic([walker]))))
+    0.802 m/s², error 3e-06 at steps of 10 ms
     """
 
     response: ct.TimeResponseData
@@ -102,6 +103,7 @@ def simulate(
     >>> walker = Walker(force=HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)
     >>> crowd = moving_crowd(reference_bridge(frequency=2.0), Traffic([walker]))
     >>> float(np.abs(simulate(crowd, step=0.01).response.outputs).max().round(4))
+    0.8023
     >>> decay = simulate(crowd, np.linspace(10, 15, 501), initial_state=[1.0, 0.0])
     >>> decay.response.states.shape
     (2, 501)

@@ -174,7 +174,7 @@ class ForceLines:
         --------
         >>> force = ForceLines(coefficients=[[301.0]], first=1, spacing=1.0, step_frequency=[2.0])
         >>> table = force.tables()
-        >>> table.shape, float((table[0, 0] + 4 * table[0, 1] + table[0, 2]).round(9))    # F(0)
+        >>> table.shape, float((table[0, 0] + 4 * table[0, 1] + table[0, 2]).round(6))    # F(0)
         ((1, 1028), 301.0)
         """
         return _tables(self.coefficients, self._indices)
