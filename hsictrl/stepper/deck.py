@@ -10,6 +10,7 @@ from hsictrl.coupling import MovingCrowd
 from hsictrl.stepper.kernel import Bridge, Contacts
 
 POINTS = 513     # of a shape along the deck: the cubic between them loses 3e-11 of a half wave
+TABLES_SUFFICE = 0.01     # s; at shorter steps the tables of the forces are to be finer, too
 
 Indices = NDArray[np.intp]
 
@@ -32,6 +33,7 @@ class Deck:
     def __init__(self, crowd: MovingCrowd, step: float, blocks: Array) -> None:
         walkers = crowd.traffic.walkers
         self._crowd, self._step = crowd, step
+        self._finer = 1 << max(0, int(np.log2(TABLES_SUFFICE / step)))
         self._walkers = walkers.part(crowd.bridge.carries(np.column_stack([0 * walkers.offset, walkers.offset])))
         lateral = self._walkers.bodies.direction != "vertical"
         self._who = np.concatenate([np.arange(len(lateral)), np.flatnonzero(lateral)])
@@ -92,7 +94,7 @@ class Deck:
 
     def _seat_forces(self, new: Indices) -> None:
         for row, force in self._walkers.part(self._who[new]).lines():
-            tables, seats = force.tables(), self._seat[new[row]]
+            tables, seats = force.tables(self._finer), self._seat[new[row]]
             missing = tables.shape[1] - self.contacts.combs.shape[1]
             if missing > 0:
                 self.contacts = self.contacts._replace(combs=np.pad(self.contacts.combs, ((0, 0), (0, missing))))
