@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache, partial
+from itertools import pairwise
 from multiprocessing import get_context
 
 import control as ct
@@ -63,7 +64,7 @@ def by_hand(crowd: hsi.MovingCrowd, times: np.ndarray) -> np.ndarray:
     events = np.concatenate([arrival, departure, [times[-1]]])
     edges = np.unique(events[events <= times[-1]])
     state, found = np.zeros(2 * (n_m + n)), np.zeros((n_m, len(times)))
-    for start, stop in zip(edges[:-1], edges[1:], strict=True):
+    for start, stop in pairwise(edges):
         present = (arrival < (start + stop) / 2) & (departure > (start + stop) / 2)
 
         def rates(t: float, state: np.ndarray, present: np.ndarray = present) -> np.ndarray:
@@ -307,7 +308,7 @@ TIMES = np.linspace(0.0, 10.0, 101)
     (CROWD, {"sense_at": [60.0]}, ValueError, r"sense_at must lie on the deck"),
     (LATE, {}, ValueError, r"somebody must arrive before the window ends at 10 s, got a first arrival at 11 s"),
     (hsi.moving_crowd(beam(), standing([hsi.Pedestrian()], np.array([25.0]))), {}, ValueError,
-     r"traffic must begin at most 1e\+07 double steps before timepts, got an arrival 2.5e\+10 s before; leave the early"),
+     r"traffic must begin at most 1e\+07 double steps before timepts, got an arrival 2.5e\+10 s before; leave"),
 ])
 def test_refusals(crowd: hsi.MovingCrowd, given: dict, error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):

@@ -284,13 +284,13 @@ class Footbridge:
                [0.006325]])
         """
         x, y = check.points("positions", positions).T
-        vertical = check.directions(direction) == "vertical"
-        if vertical.shape not in ((), x.shape):
-            raise ValueError(f"direction must be one for all positions or one each, got {vertical.size} for {len(x)} "
+        given = check.directions(direction)
+        if given.shape not in ((), x.shape):
+            raise ValueError(f"direction must be one for all positions or one each, got {given.size} for {len(x)} "
                              "positions; match them")
-        carried = self.carries(positions)
+        moving = {one: self.carries(positions) * (given == one) for one in check.DIRECTIONS if np.any(given == one)}
         return np.column_stack([
-            carried * np.where(vertical, *(mode.shape.derivative(x, y, one, order) for one in check.DIRECTIONS))
+            sum((moves * mode.shape.derivative(x, y, one, order) for one, moves in moving.items()), np.zeros(len(x)))
             / np.sqrt(mode.modal_mass) for mode in self.modes])
 
     def with_crowd_mass(self, mass: float) -> Footbridge:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import cast
 
 import control as ct
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from hsictrl import plots
 from hsictrl.assessment import Assessment, PeakTrial
 from hsictrl.cli.description import Description
-from hsictrl.prediction import Prediction
+from hsictrl.coupling import OccupiedBridge
 from hsictrl.resonance import effective, frf
 from hsictrl.study import trial_rng
 
@@ -21,13 +22,13 @@ def draw(path: Path, found: Assessment, case: Description) -> None:
     """Draw one assessment, with the frequency responses and histories of its first trial, into a file."""
     trials = [PeakTrial(model=model, bridge=found.bridge, flow=found.flow, force=case.force) for model in ("MF", "PMC")]
     first = [trial.prediction(trial_rng(case.seed, 0)) for trial in trials]
+    systems = [cast(OccupiedBridge, one.system) for one in first]     # neither model is MC
     plot = plots.assessment_figure(
-        frfs=[_frf(one) for one in first], effective=[effective(one.system) for one in first],
+        frfs=[_frf(system) for system in systems], effective=[effective(system) for system in systems],
         responses=[one.response for one in first], ensembles=[found.mf, found.pmc],
         title=f"{found.flow} on {str(case.bridge).splitlines()[0]}; (a), (b): trial 0 of seed {case.seed}")
     plots.save(plot, path)
 
 
-def _frf(prediction: Prediction) -> ct.FrequencyResponseData:
-    frequency = prediction.system.bridge.modes[0].frequency
-    return frf(prediction.system, frequency * np.linspace(*BAND, LINES))
+def _frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
+    return frf(system, system.bridge.modes[0].frequency * np.linspace(*BAND, LINES))

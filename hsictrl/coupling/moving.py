@@ -236,9 +236,13 @@ def _rates(crowd: MovingCrowd, drive: Array) -> Callable[[float, Array, Array], 
 
     def rates(t: float, x: Array, further: Array) -> Array:
         z, u, dz, du = np.split(x, [n_m, n_m + n, 2 * n_m + n])
-        rows, moving, bending = (crowd.row_rates(t, order) for order in range(3))
-        pull = people.damping_coefficient * (du - rows @ dz - moving @ z) + people.stiffness * (u - rows @ z)
-        contact = pull - people.unsprung_mass * (2 * moving @ dz + bending @ z)
+        rows = crowd.rows(t)
+        pull = people.damping_coefficient * (du - rows @ dz) + people.stiffness * (u - rows @ z)
+        contact = pull
+        if crowd.convective:
+            along, bend = crowd.row_rates(t, 1), crowd.row_rates(t, 2)
+            pull = pull - people.damping_coefficient * (along @ z)
+            contact = pull - people.unsprung_mass * (2 * along @ dz + bend @ z)
         upright = rows if vertical else bridge.participation(walkers.places(t))     # forces are vertical
         modal = rows.T @ contact + upright.T @ _walking_forces(lines, n, t) + drive.T @ np.atleast_1d(further)
         mass = np.eye(n_m) + rows.T * people.unsprung_mass @ rows

@@ -93,8 +93,8 @@ def predict(
         Who walks over it.
     timepts : array_like, shape (m,), optional
         Evenly spaced times at which the response is given; over the observed window, at least 40 per period
-        of the highest mode (25 for "MC"), if not given. Forces are sampled at the given times at least, so that a finer step
-        resolves better how walkers step on and off [s].
+        of the highest mode (25 for "MC"), if not given. Forces are sampled at the given times at least, so that a
+        finer step resolves better how walkers step on and off [s].
     sense_at : array_like, shape (p,) or (p, 2), optional
         Where accelerations are read; at the first mode's antinode if not given [m].
     warm_up : float, optional
