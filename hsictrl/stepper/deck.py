@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from hsictrl._checks import DIRECTIONS, Array
 from hsictrl.coupling import MovingCrowd
+from hsictrl.pedestrian import Crowd
 from hsictrl.stepper.kernel import Bridge, Contacts
 
 POINTS = 513     # of a shape along the deck: the cubic between them loses 3e-11 of a half wave
 TABLES_SUFFICE = 0.01     # s; at shorter steps the tables of the forces are to be finer, too
+
+# quadrature over (0, 1), exact for polynomials of degree 11
+NODES, WEIGHTS = (1 + np.polynomial.legendre.leggauss(6)[0]) / 2, np.polynomial.legendre.leggauss(6)[1] / 2
+# forcing as polynomials in t/h of its values at the stages (Krogstad 2005), at the nodes and by their weights:
+# of the first; of the first and the second; of the first and the third; of all, where the middle ones share
+HALF = WEIGHTS * polyval(NODES, np.array([[1, 0], [1, -2], [0, 2]]).T)
+WHOLE = WEIGHTS * polyval(NODES, np.array([[1, -2, 0], [0, 2, 0], [1, -3, 2], [0, 2, -2], [0, -1, 2]]).T)
 
 Indices = NDArray[np.intp]
 
@@ -41,7 +52,10 @@ class Deck:
         self._driven = ~(self._embodied & lateral[self._who])
         self._direction = np.where(self._embodied, self._walkers.bodies.direction[self._who], "vertical")
         self._arrival = self._walkers.arrival[self._who]
-        self._departure = self._arrival + crowd.bridge.length / self._walkers.speed[self._who]
+        self._speed, self._offset = self._walkers.speed[self._who], self._walkers.offset[self._who]
+        self._departure = self._arrival + crowd.bridge.length / self._speed
+        self._bodies = _alone(self._walkers.bodies)[:, self._who]
+        self._bodies[2:] *= self._embodied
         self._first = np.maximum(np.searchsorted(blocks, self._arrival, side="right") - 1, 0)
         self._last = np.searchsorted(blocks, self._departure) - 1
         self._furnish(_most_at_once(self._first, self._last, len(blocks) - 1))
@@ -56,8 +70,8 @@ class Deck:
             paths=np.full((3, seats), np.inf), shapes=np.zeros((seats, orders, n_m, POINTS)),
             bodies=np.zeros((4, seats)), combs=np.zeros((seats, 4)), periods=np.zeros((2, seats)))
         modes = np.stack([bridge.omega**2, 2 * bridge.damping * bridge.omega])
-        alone = self._propagators(*modes)
-        self.bridge = Bridge(bridge.length, modes, np.concatenate([alone, np.zeros((3, 4, seats))], axis=2))
+        alone = self._weights(*modes)
+        self.bridge = Bridge(bridge.length, modes, np.concatenate([alone, np.zeros((2, 24, seats))], axis=2))
         self.fine, self.coarse = np.zeros((2, n_m + seats)), np.zeros((2, n_m + seats))
 
     def enter(self, block: int) -> None:
@@ -74,23 +88,23 @@ class Deck:
             self._seat_forces(new[self._driven[new]])
 
     def _seat_paths(self, new: Indices, seats: Indices) -> None:
-        speed, contacts = self._walkers.speed[self._who[new]], self.contacts
-        contacts.paths[:, seats] = self._arrival[new], self._departure[new], speed
-        x, y = np.linspace(0, self._crowd.bridge.length, POINTS), self._walkers.offset[self._who[new], None]
+        contacts, x = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
+        contacts.paths[:, seats] = self._arrival[new], self._departure[new], self._speed[new]
         for direction in DIRECTIONS:
             moves = self._direction[new] == direction
+            if not np.any(moves):
+                continue
+            y, speed = self._offset[new][moves, None], self._speed[new][moves, None]
             for j, mode in enumerate(self._crowd.bridge.modes):
                 for order in range(contacts.shapes.shape[1]):
-                    shapes = mode.shape.derivative(x, y[moves], direction, order) / np.sqrt(mode.modal_mass)
-                    contacts.shapes[seats[moves], order, j] = shapes * speed[moves, None] ** order
+                    shapes = mode.shape.derivative(x, y, direction, order)
+                    contacts.shapes[seats[moves], order, j] = shapes * speed**order / np.sqrt(mode.modal_mass)
 
     def _seat_bodies(self, new: Indices, seats: Indices) -> None:
-        people, n_m = self._walkers.bodies.part(self._who[new]), self._crowd.bridge.n_modes
-        alone = people.stiffness / people.sprung_mass, people.damping_coefficient / people.sprung_mass
-        share = self._embodied[new]
-        self.contacts.bodies[:, seats] = *alone, share * people.sprung_mass, share * people.unsprung_mass
-        self.bridge.propagators[:, :, n_m + seats] = self._propagators(*alone)
-        self.fine[:, n_m + seats] = self.coarse[:, n_m + seats] = 0.0
+        self.contacts.bodies[:, seats] = self._bodies[:, new]
+        places = self._crowd.bridge.n_modes + seats
+        self.bridge.weights[:, :, places] = self._weights(*self._bodies[:2, new])
+        self.fine[:, places] = self.coarse[:, places] = 0.0
 
     def _seat_forces(self, new: Indices) -> None:
         for row, force in self._walkers.part(self._who[new]).lines():
@@ -102,16 +116,35 @@ class Deck:
             self.contacts.periods[0, seats] = force.spacing * force.step_frequency
             self.contacts.periods[1, seats] = tables.shape[1] - 4
 
-    def _propagators(self, stiffness: Array, damping: Array) -> Array:
-        return np.stack([propagator(stiffness, damping, factor * self._step) for factor in (0.5, 1.0, 2.0)])
+    def _weights(self, stiffness: Array, damping: Array) -> Array:
+        return np.stack([step_weights(stiffness, damping, factor * self._step) for factor in (1, 2)])
 
 
-def propagator(stiffness: Array, damping: Array, time: float) -> Array:
-    """Exact motion of free oscillators ẍ = −stiffness x − damping ẋ over some time, rows [xx, xẋ, ẋx, ẋẋ]."""
+def step_weights(stiffness: Array, damping: Array, h: float) -> Array:
+    """Weights of a step of the kernel for oscillators ẍ = −stiffness x − damping ẋ + n, (24, n); see `kernel`."""
+    half = [_free(stiffness, damping, h / 2), _forced(stiffness, damping, h / 2, HALF)]
+    whole = [_free(stiffness, damping, h), _forced(stiffness, damping, h, WHOLE)]
+    return np.concatenate(half + whole)
+
+
+def _free(stiffness: Array, damping: Array, time: Any) -> Array:
+    """Exact motion of free oscillators over some time, rows [xx, xẋ, ẋx, ẋẋ]."""
     root = np.sqrt(stiffness - damping**2 / 4 + 0j)      # imaginary where overdamped
     falls = np.exp(-damping * time / 2)
     cosine, sine = falls * np.cos(root * time).real, falls * time * np.sinc(root * time / np.pi).real
     return np.stack([cosine + damping / 2 * sine, sine, -stiffness * sine, cosine - damping / 2 * sine])
+
+
+def _forced(stiffness: Array, damping: Array, time: float, polynomials: Array) -> Array:
+    """What forcings n = p(t/time) come to from rest, rows [x, ẋ] of each."""
+    kicks = _free(stiffness, damping, time * (1 - NODES)[:, None])[1::2]
+    return np.einsum("pi,cik->pck", time * polynomials, kicks).reshape(-1, len(stiffness))
+
+
+def _alone(people: Crowd) -> Array:
+    """K = k/m₁, C = c/m₁, m₁ and m₀, shape (4, n)."""
+    own = people.stiffness / people.sprung_mass, people.damping_coefficient / people.sprung_mass
+    return np.stack([*own, people.sprung_mass, people.unsprung_mass])
 
 
 def _most_at_once(first: Indices, last: Indices, blocks: int) -> int:

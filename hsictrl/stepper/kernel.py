@@ -1,13 +1,14 @@
-"""The compiled kernel: Lawson's Runge-Kutta steps of a bridge and those on it.
+"""The compiled kernel: exponential Runge-Kutta steps of a bridge and those on it.
 
-Modes and bodies alone are propagated exactly; what couples them, and the walking forces, are taken by the classical
-fourth-order rule (Lawson 1967). With the states x = (z, u), exact propagators E, and the forcing n = (n_z, n_u):
+Modes and bodies are oscillators whose own motion is propagated exactly, under a forcing n that couples them. With
+states z of the modes and u of the bodies,
 
     n_u = K φ·z + C φ·ż                                     the pull of the deck on a body, K = k/m₁, C = c/m₁
     n_z = z̈ + Γ ż + Ω² z,   M̄ z̈ = Σ φ [m₁(K u + C u̇ − n_u) + F] + f − Γ ż − Ω² z
 
-so that nothing is solved but the n_m × n_m mass matrix M̄ = I + Σ m₀ φ φᵀ. With every two steps of h goes one of 2h,
-which shares their shapes and forces and tells the error.
+so that nothing is solved but the n_m × n_m mass matrix M̄ = I + Σ m₀ φ φᵀ. The forcing is taken at four stages, and
+interpolated in between by polynomials whose response is exact (Krogstad 2005, J. Comput. Phys. 203, 72–88; order
+four). With every two steps of h goes one of 2h, which shares their shapes and forces and tells the error.
 
 On a step in which somebody steps on or off the deck, φ is not smooth. Its values at the nodes of the step are then
 those of the quadratic with the same first three moments over the step, which keeps the order.
@@ -49,7 +50,7 @@ class Bridge(NamedTuple):
 
     length: float         # [m]
     modes: Array          # (2, n_m): Ω² [1/s²] and Γ [1/s]
-    propagators: Array    # (3, 4, n_m + n): rows of E over h/2, h and 2h, [xx, xẋ, ẋx, ẋẋ]
+    weights: Array        # (2, 24, n_m + n): `step_weights` for steps of h and 2h
 
 
 class Field(NamedTuple):
@@ -147,7 +148,9 @@ def _shapes(t, first, last, length, contacts, rows):  # type: ignore[no-untyped-
     paths, shapes = contacts.paths, contacts.shapes
     for k in range(first, last):
         if t < paths[0, k] or t > paths[1, k]:
-            rows[:, :, k] = 0.0
+            for order in range(rows.shape[0]):
+                for j in range(rows.shape[1]):
+                    rows[order, j, k] = 0.0
             continue
         place = paths[2, k] * (t - paths[0, k]) / length
         for order in range(rows.shape[0]):
@@ -202,11 +205,11 @@ def _sum(field, i, drive, unsprung, force):  # type: ignore[no-untyped-def]
 @njit(**COMPILED)
 def _go(t, h, first, stride, bridge, contacts, events, drive, field, kept, force, x, work, record):  # type: ignore[no-untyped-def]
     """Record the state at t and take a step of h, over nodes first, first + stride and first + 2 stride."""
-    half, whole = bridge.propagators[stride - 1], bridge.propagators[stride]
+    weights = bridge.weights[stride - 1]
     late = _within(events, t, h)
     if not len(late):
         _keep(x, record)
-        _step(h, field, first, stride, half, whole, bridge.modes, contacts.bodies, x, work)
+        _step(field, first, stride, weights, bridge.modes, contacts.bodies, x, work)
         record[2] = work.acceleration
         return
     _record(field, first, bridge, contacts, x, work, record)
@@ -217,7 +220,7 @@ def _go(t, h, first, stride, bridge, contacts, events, drive, field, kept, force
     for i in range(3):
         node = first + i * stride
         _sum(kept, i, drive[node], contacts.bodies[3], force[node])
-    _step(h, kept, 0, 1, half, whole, bridge.modes, contacts.bodies, x, work)
+    _step(kept, 0, 1, weights, bridge.modes, contacts.bodies, x, work)
 
 
 @njit(**COMPILED)
@@ -253,27 +256,33 @@ def _record(field, i, bridge, contacts, x, work, record):  # type: ignore[no-unt
 
 
 @njit(**COMPILED)
-def _step(h, field, first, stride, half, whole, modes, bodies, x, work):  # type: ignore[no-untyped-def]
-    """One step of Lawson's rule. Leaves z̈ at its beginning in `work`."""
-    y, n, count, unused = work.y, work.n, x.shape[1], np.empty(modes.shape[1])
+def _step(field, first, stride, w, modes, bodies, x, work):  # type: ignore[no-untyped-def]
+    """One step, from the state x on. Leaves z̈ at its beginning in `work`.
+
+    Rows of the weights w: 0 to 3 for free motion over half a step, 4 and 5 for the first forcing alone, 6 to 9 for
+    the first and the second; 10 to 13 for free motion over the step, 14 to 17 for the first and the third forcing,
+    18 to 23 for all, the two in the middle together.
+    """
+    y, n, unused = work.y, work.n, np.empty(modes.shape[1])
     _force(field, first, modes, bodies, x, n[0], work.acceleration)
-    for k in range(count):
-        kicked = x[1, k] + h / 2 * n[0, k]
-        y[0, k] = half[0, k] * x[0, k] + half[1, k] * kicked
-        y[1, k] = half[2, k] * x[0, k] + half[3, k] * kicked
+    for k in range(x.shape[1]):
+        y[0, k] = w[0, k] * x[0, k] + w[1, k] * x[1, k] + w[4, k] * n[0, k]
+        y[1, k] = w[2, k] * x[0, k] + w[3, k] * x[1, k] + w[5, k] * n[0, k]
     _force(field, first + stride, modes, bodies, y, n[1], unused)
-    for k in range(count):
-        y[0, k] = half[0, k] * x[0, k] + half[1, k] * x[1, k]
-        y[1, k] = half[2, k] * x[0, k] + half[3, k] * x[1, k] + h / 2 * n[1, k]
+    for k in range(x.shape[1]):
+        y[0, k] = w[0, k] * x[0, k] + w[1, k] * x[1, k] + w[6, k] * n[0, k] + w[8, k] * n[1, k]
+        y[1, k] = w[2, k] * x[0, k] + w[3, k] * x[1, k] + w[7, k] * n[0, k] + w[9, k] * n[1, k]
     _force(field, first + stride, modes, bodies, y, n[2], unused)
-    for k in range(count):
-        y[0, k] = whole[0, k] * x[0, k] + whole[1, k] * x[1, k] + h * half[1, k] * n[2, k]
-        y[1, k] = whole[2, k] * x[0, k] + whole[3, k] * x[1, k] + h * half[3, k] * n[2, k]
+    for k in range(x.shape[1]):
+        y[0, k] = w[10, k] * x[0, k] + w[11, k] * x[1, k] + w[14, k] * n[0, k] + w[16, k] * n[2, k]
+        y[1, k] = w[12, k] * x[0, k] + w[13, k] * x[1, k] + w[15, k] * n[0, k] + w[17, k] * n[2, k]
     _force(field, first + 2 * stride, modes, bodies, y, n[3], unused)
-    for k in range(count):
-        kicked, middle = x[1, k] + h / 6 * n[0, k], h / 3 * (n[1, k] + n[2, k])
-        position = whole[0, k] * x[0, k] + whole[1, k] * kicked + half[1, k] * middle
-        x[1, k] = whole[2, k] * x[0, k] + whole[3, k] * kicked + half[3, k] * middle + h / 6 * n[3, k]
+    for k in range(x.shape[1]):
+        middle = n[1, k] + n[2, k]
+        position = (w[10, k] * x[0, k] + w[11, k] * x[1, k]
+                    + w[18, k] * n[0, k] + w[20, k] * middle + w[22, k] * n[3, k])
+        x[1, k] = (w[12, k] * x[0, k] + w[13, k] * x[1, k]
+                   + w[19, k] * n[0, k] + w[21, k] * middle + w[23, k] * n[3, k])
         x[0, k] = position
 
 
