@@ -67,7 +67,7 @@ class Deck:
         self._seat = np.full(len(self._who), -1)
         self._free = np.ones(seats, dtype=bool)
         self.contacts = Contacts(
-            paths=np.full((3, seats), np.inf), shapes=np.zeros((seats, orders, n_m, POINTS)),
+            used=0, paths=np.full((3, seats), np.inf), shapes=np.zeros((seats, orders, n_m, POINTS)),
             bodies=np.zeros((4, seats)), combs=np.zeros((seats, 4)), periods=np.zeros((2, seats)))
         modes = np.stack([bridge.omega**2, 2 * bridge.damping * bridge.omega])
         alone = self._weights(*modes)
@@ -82,6 +82,7 @@ class Deck:
         new = np.flatnonzero((self._first == block) & (self._last >= block))
         self._seat[new] = seats = np.flatnonzero(self._free)[:len(new)]
         self._free[seats] = False
+        self.contacts = self.contacts._replace(used=int(np.max(np.flatnonzero(~self._free), initial=-1)) + 1)
         if len(new):
             self._seat_paths(new, seats)
             self._seat_bodies(new, seats)

@@ -36,8 +36,9 @@ FROM_MOMENTS = np.linalg.inv([[1 / 6, 2 / 3, 1 / 6], [0, 1 / 3, 1 / 6], [-1 / 60
 
 
 class Contacts(NamedTuple):
-    """Where bodies and forces meet the deck, one per slot."""
+    """Where bodies and forces meet the deck, one per slot; arrays may have more slots than are in use."""
 
+    used: int         # slots in use, the first ones
     paths: Array      # (3, n): arrival, departure [s] and speed [m/s]
     shapes: Array     # (n, orders, n_m, points): φ along the deck and, for convective terms, v φ′ and v² φ″ [1/√kg, …]
     bodies: Array     # (4, n): K [1/s²], C [1/s], sprung and unsprung mass [kg]
@@ -78,7 +79,7 @@ def march(t, h, bridge, contacts, drive, fine, coarse, found, rough):  # type: i
     found : (2 pairs + 1, 3, n_m), filled with z, ż and z̈ at every step
     rough : (pairs + 1, 3, n_m), likewise, of the coarse road
     """
-    orders, n_m, n = contacts.shapes.shape[1], drive.shape[1], contacts.paths.shape[1]
+    orders, n_m, n = contacts.shapes.shape[1], drive.shape[1], contacts.used
     field = Field(np.zeros((5, orders, n_m, n)), np.zeros((5, n_m)), np.zeros((5, n_m, n_m)))
     kept = Field(np.zeros((3, orders, n_m, n)), np.zeros((3, n_m)), np.zeros((3, n_m, n_m)))
     work = Work(np.zeros((2, n_m + n)), np.zeros((4, n_m + n)), np.zeros(n_m))
@@ -265,19 +266,19 @@ def _step(field, first, stride, w, modes, bodies, x, work):  # type: ignore[no-u
     """
     y, n, unused = work.y, work.n, np.empty(modes.shape[1])
     _force(field, first, modes, bodies, x, n[0], work.acceleration)
-    for k in range(x.shape[1]):
+    for k in range(y.shape[1]):
         y[0, k] = w[0, k] * x[0, k] + w[1, k] * x[1, k] + w[4, k] * n[0, k]
         y[1, k] = w[2, k] * x[0, k] + w[3, k] * x[1, k] + w[5, k] * n[0, k]
     _force(field, first + stride, modes, bodies, y, n[1], unused)
-    for k in range(x.shape[1]):
+    for k in range(y.shape[1]):
         y[0, k] = w[0, k] * x[0, k] + w[1, k] * x[1, k] + w[6, k] * n[0, k] + w[8, k] * n[1, k]
         y[1, k] = w[2, k] * x[0, k] + w[3, k] * x[1, k] + w[7, k] * n[0, k] + w[9, k] * n[1, k]
     _force(field, first + stride, modes, bodies, y, n[2], unused)
-    for k in range(x.shape[1]):
+    for k in range(y.shape[1]):
         y[0, k] = w[10, k] * x[0, k] + w[11, k] * x[1, k] + w[14, k] * n[0, k] + w[16, k] * n[2, k]
         y[1, k] = w[12, k] * x[0, k] + w[13, k] * x[1, k] + w[15, k] * n[0, k] + w[17, k] * n[2, k]
     _force(field, first + 2 * stride, modes, bodies, y, n[3], unused)
-    for k in range(x.shape[1]):
+    for k in range(y.shape[1]):
         middle = n[1, k] + n[2, k]
         position = (w[10, k] * x[0, k] + w[11, k] * x[1, k]
                     + w[18, k] * n[0, k] + w[20, k] * middle + w[22, k] * n[3, k])
