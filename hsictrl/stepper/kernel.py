@@ -31,6 +31,7 @@ from hsictrl.walking.lines import spline
 COMPILED: dict[str, Any] = {
     "cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"reassoc", "contract", "nsz", "arcp"}}
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)      # unsigned, or every index is checked for its sign
 # values at 0, ½ and 1 of the quadratic q with given moments ∫ q τⁱ dτ over (0, 1), i = 0, 1, 2
 FROM_MOMENTS = np.linalg.inv([[1 / 6, 2 / 3, 1 / 6], [0, 1 / 3, 1 / 6], [-1 / 60, 1 / 5, 3 / 20]])
 
@@ -63,11 +64,13 @@ class Field(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Scratch space of a step."""
+    """Scratch space."""
 
     y: Array               # (2, n_m + n): a stage
     n: Array               # (4, n_m + n): forcing at each stage
     acceleration: Array    # (n_m)
+    between: Array         # (n): place between two knots of a table
+    knot: NDArray[np.int64]
 
 
 @njit(**COMPILED)
@@ -82,16 +85,16 @@ def march(t, h, bridge, contacts, drive, fine, coarse, found, rough):  # type: i
     orders, n_m, n = contacts.shapes.shape[1], drive.shape[1], contacts.used
     field = Field(np.zeros((5, orders, n_m, n)), np.zeros((5, n_m)), np.zeros((5, n_m, n_m)))
     kept = Field(np.zeros((3, orders, n_m, n)), np.zeros((3, n_m)), np.zeros((3, n_m, n_m)))
-    work = Work(np.zeros((2, n_m + n)), np.zeros((4, n_m + n)), np.zeros(n_m))
+    work = Work(np.zeros((2, n_m + n)), np.zeros((4, n_m + n)), np.zeros(n_m), np.zeros(n), np.zeros(n, np.int64))
     force = np.zeros((5, n))
     events = _events(contacts.paths)
-    _shapes(t, 0, n, bridge.length, contacts, field.rows[4])
-    _forces(t, contacts, force[4])
+    _shapes(t, 0, n, bridge.length, contacts, field.rows[4], work.between, work.knot)
+    _forces(t, contacts, force[4], work.between, work.knot)
     _sum(field, 4, drive[0], contacts.bodies[3], force[4])
     for pair in range(len(rough) - 1):
         start = t + 2 * h * pair
         field.rows[0], field.load[0], field.root[0], force[0] = field.rows[4], field.load[4], field.root[4], force[4]
-        _fill(start, h, bridge.length, contacts, events, field, force)
+        _fill(start, h, bridge.length, contacts, events, field, force, work)
         for i in range(1, 5):
             _sum(field, i, drive[4 * pair + i], contacts.bodies[3], force[i])
         share = drive[4 * pair:4 * pair + 5]
@@ -124,13 +127,13 @@ def _within(events, t, h):  # type: ignore[no-untyped-def]
 
 
 @njit(**COMPILED)
-def _fill(t, h, length, contacts, events, field, force):  # type: ignore[no-untyped-def]
+def _fill(t, h, length, contacts, events, field, force, work):  # type: ignore[no-untyped-def]
     """Participations and forces at nodes 1 to 4, half a step of h apart."""
     rows = field.rows
     for i in range(1, 5):
-        _forces(t + h / 2 * i, contacts, force[i])
+        _forces(t + h / 2 * i, contacts, force[i], work.between, work.knot)
     for i in (2, 4):
-        _shapes(t + h / 2 * i, 0, rows.shape[3], length, contacts, rows[i])
+        _shapes(t + h / 2 * i, 0, rows.shape[3], length, contacts, rows[i], work.between, work.knot)
     # nobody goes far in half a step: a parabola through every second node loses 1e-10
     for order in range(rows.shape[1]):
         for j in range(rows.shape[2]):
@@ -140,48 +143,57 @@ def _fill(t, h, length, contacts, events, field, force):  # type: ignore[no-unty
                 rows[3, order, j, k] = (3 * c + 6 * b - a) / 8
     for k in _within(events, t, 2 * h):     # but for those who have just come, or gone
         for i in (1, 3):
-            _shapes(t + h / 2 * i, k, k + 1, length, contacts, rows[i])
+            _shapes(t + h / 2 * i, k, k + 1, length, contacts, rows[i], work.between, work.knot)
 
 
 @njit(**COMPILED)
-def _shapes(t, first, last, length, contacts, rows):  # type: ignore[no-untyped-def]
+def _shapes(t, first, last, length, contacts, rows, between, knot):  # type: ignore[no-untyped-def]
     """Participations of a range of slots at time t."""
-    paths, shapes = contacts.paths, contacts.shapes
+    paths, tables, points = contacts.paths, contacts.shapes.ravel(), contacts.shapes.shape[3]
     for k in range(first, last):
-        if t < paths[0, k] or t > paths[1, k]:
-            for order in range(rows.shape[0]):
-                for j in range(rows.shape[1]):
-                    rows[order, j, k] = 0.0
-            continue
-        place = paths[2, k] * (t - paths[0, k]) / length
-        for order in range(rows.shape[0]):
-            for j in range(rows.shape[1]):
-                rows[order, j, k] = _shape(shapes[k, order, j], place)
+        place = min(max(paths[2, k] * (t - paths[0, k]) / length, 0.0), 1.0) * (points - 1)
+        nearest = min(max(int(place), 1), points - 3)
+        between[k] = place - nearest
+        knot[k] = (nearest - 1) + k * (len(tables) // len(contacts.shapes))
+    for order in range(rows.shape[0]):
+        for j in range(rows.shape[1]):
+            for k in range(first, last):
+                i = np.uint64(knot[k] + (order * rows.shape[1] + j) * points)
+                on_deck = (t >= paths[0, k]) & (t <= paths[1, k])
+                value = _cubic(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], between[k])
+                rows[order, j, k] = value if on_deck else 0.0
 
 
 @njit(**COMPILED)
-def _forces(t, contacts, force):  # type: ignore[no-untyped-def]
+def _forces(t, contacts, force, between, knot):  # type: ignore[no-untyped-def]
     """Walking forces at time t, of those off the deck too."""
-    periods, combs = contacts.periods, contacts.combs
+    periods, tables, points = contacts.periods, contacts.combs.ravel(), contacts.combs.shape[1]
     for k in range(len(force)):
         cycle = t * periods[0, k]
-        force[k] = (cycle - np.floor(cycle)) * periods[1, k]
+        place = (cycle - np.floor(cycle)) * periods[1, k]
+        nearest = int(place)
+        between[k] = place - nearest
+        knot[k] = nearest + k * points
     for k in range(len(force)):
-        i = int(force[k])
-        force[k] = _spline(combs[k, i], combs[k, i + 1], combs[k, i + 2], combs[k, i + 3], force[k] - i)
+        i = np.uint64(knot[k])
+        force[k] = _spline(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], between[k])
 
 
 _spline = njit(**COMPILED)(spline)
 
 
 @njit(**COMPILED)
+def _cubic(a, b, c, d, s):  # type: ignore[no-untyped-def]
+    """The cubic through a, b, c and d at −1, 0, 1 and 2, at s."""
+    return s * (s - 1) * ((s + 1) * d - (s - 2) * a) / 6 + (s + 1) * (s - 2) * ((s - 1) * b - s * c) / 2
+
+
+@njit(**COMPILED)
 def _shape(table, place):  # type: ignore[no-untyped-def]
-    """A shape at a place in (0, 1) along the deck, by the cubic through its four nearest samples."""
+    """A shape at a place in (0, 1) along the deck."""
     knot = place * (len(table) - 1)
     i = min(max(int(knot), 1), len(table) - 3)
-    s = knot - i
-    a, b, c, d = table[i - 1], table[i], table[i + 1], table[i + 2]
-    return s * (s - 1) * ((s + 1) * d - (s - 2) * a) / 6 + (s + 1) * (s - 2) * ((s - 1) * b - s * c) / 2
+    return _cubic(table[i - 1], table[i], table[i + 1], table[i + 2], knot - i)
 
 
 @njit(**COMPILED)
