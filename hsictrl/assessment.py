@@ -31,7 +31,7 @@ class PeakTrial:
     Parameters
     ----------
     model : str
-        "SF", "MF", "MFAM" or "PMC".
+        "SF", "MF", "MFAM", "PMC" or "MC".
     bridge : Footbridge
         The empty bridge.
     flow : CrowdFlow

@@ -1,4 +1,4 @@
-"""What is read from a record: the running root-mean-square of a response."""
+"""What is read from a record: its running root-mean-square and its amplitude spectrum."""
 
 from __future__ import annotations
 
@@ -49,6 +49,49 @@ def running_rms(response: ct.TimeResponseData, *, duration: float = 1.0) -> Arra
     length = np.minimum(window, time - time[0])[1:]
     mean = _energy_of_last(time, square, window)[..., 1:] / length
     return np.sqrt(np.concatenate([square[..., :1], mean], axis=-1))
+
+
+def amplitude_spectrum(response: ct.TimeResponseData) -> tuple[Array, Array]:
+    """One-sided amplitude spectrum of a record under a Hann window.
+
+    Parameters
+    ----------
+    response : control.TimeResponseData
+        The record, evenly sampled [unit of the outputs, s].
+
+    Returns
+    -------
+    frequencies : array, shape (n // 2 + 1,)
+        Bins, one over the duration of the n samples apart [Hz].
+    amplitudes : array
+        Amplitude of every output in every bin [unit of the outputs].
+
+    Raises
+    ------
+    ValueError
+        If the times do not increase evenly.
+
+    Notes
+    -----
+    A sine at the centre of a bin shows its amplitude there and half of it in both neighbours; halfway between two
+    bins it shows 0.85 of it in both. A mean shows in the first two bins.
+
+    Examples
+    --------
+    >>> time = np.arange(1000) / 100
+    >>> wave = ct.TimeResponseData(time, 3.0 * np.sin(2 * np.pi * 2.0 * time), issiso=True)
+    >>> frequencies, amplitudes = amplitude_spectrum(wave)
+    >>> print(frequencies[19:22], amplitudes[19:22].round(6))
+    [1.9 2.  2.1] [1.5 3.  1.5]
+    """
+    check.instance("response", response, ct.TimeResponseData, "give predict(...).response, or make one of a record")
+    time = check.even_times("times of a record", response.time)
+    n = len(time)
+    window = np.sin(np.pi * np.arange(n) / n)**2   # periodic, so that whole periods leak into two bins and no more
+    lines = np.fft.rfft(window * np.asarray(response.outputs, dtype=np.float64), axis=-1)
+    bins = np.arange(n // 2 + 1)
+    sides = np.where((bins == 0) | (2 * bins == n), 1.0, 2.0)
+    return bins * (n - 1) / (n * (time[-1] - time[0])), sides * np.abs(lines) / np.sum(window)
 
 
 def _energy_of_last(time: Array, square: Array, window: float) -> Array:

@@ -1,6 +1,7 @@
 """Truth: the digits of the Python functions that the command calls, by another road than its printing."""
 
 import csv
+import dataclasses
 import io
 import json
 import os
@@ -11,14 +12,17 @@ import sys
 from types import SimpleNamespace
 
 import control as ct
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image
 from typer.testing import CliRunner
 
 import hsictrl as hsi
 from hsictrl import assessment, paper
 from hsictrl.cli import app, files
 from hsictrl.cli.workers import workers
+from hsictrl.prediction import predict_tuned
 
 QUICK = ["--density", "0.2", "--tolerance", "0.5"]
 YOUNG = "seed = 3\n[traffic]\npersons = [15, 30]\n[force]\nmodel = 'young'\n"
@@ -55,7 +59,8 @@ def no_work(monkeypatch):
     """Any trial is a failure of the test."""
     def refuse(*args, **kwargs):
         raise AssertionError("the long work began")
-    for module, name in ((assessment, "assess"), (assessment, "study_effective"), (paper, "compute")):
+    for module, name in ((assessment, "assess"), (assessment, "study_effective"), (paper, "compute"),
+                         (assessment.PeakTrial, "prediction")):
         monkeypatch.setattr(module, name, refuse)
 
 
@@ -199,6 +204,158 @@ def test_effective_says_what_has_not_settled(monkeypatch, young):
     assert json.loads(run("effective", young, "--json").stdout)["rows"][0]["remarks"] == "too few"
 
 
+# simulate
+
+@pytest.fixture(scope="module")
+def crossed():
+    """Trial 2 of seed 3, as a Python user computes it: 30 persons by Young's forces."""
+    bridge, flow = hsi.reference_bridge(), hsi.CrowdFlow(persons=30)
+    traffic = flow.sample(bridge, rng=hsi.trial_rng(3, 2), force=hsi.YoungForce())
+    return bridge, traffic, predict_tuned("MC", bridge, traffic)
+
+
+@pytest.fixture(scope="module")
+def thirty(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cli") / "thirty.toml"
+    path.write_text("seed = 3\n[traffic]\npersons = 30\n[force]\nmodel = 'young'\n")
+    return path
+
+
+def test_simulate_has_the_digits_of_a_trial(thirty, crossed):
+    bridge, traffic, found = crossed
+    document = json.loads(run("simulate", thirty, "--trial", 2, "--json").stdout)
+    row, = document["rows"]
+    standing = hsi.effective(hsi.couple(bridge, *traffic.standing_on(bridge)))
+    by_hand = hsi.simulate(hsi.moving_crowd(bridge, found.system.traffic))
+    assert row["a_mc_m_per_s2"] == found.peak_acceleration
+    assert row["a_mc_m_per_s2"] == assessment.PeakTrial(
+        model="MC", bridge=bridge, flow=hsi.CrowdFlow(persons=30), force=hsi.YoungForce())(hsi.trial_rng(3, 2))
+    assert (row["f_eff_hz"], row["xi_eff"]) == (standing.frequency, standing.damping)
+    assert row["step_frequency_hz"] == standing.frequency    # below 2.5 Hz: by the first harmonic
+    assert (row["error"], row["step_s"]) == (by_hand.error, by_hand.step)
+    assert row["crossing_s"] == pytest.approx(50 / hsi.weidmann_speed(0.2))
+    assert row["class_mc"] == hsi.comfort_class(found.peak_acceleration)
+    assert (document["settings"]["model"], document["settings"]["trial"], document["settings"]["seed"]) == ("MC", 2, 3)
+
+
+def test_simulate_reads_peak_and_rms_from_whole_seconds(thirty, crossed):
+    """The RMS of the last second, by its definition, at every sample that has a second before it."""
+    bridge, _, found = crossed
+    row, = json.loads(run("simulate", thirty, "--trial", 2, "--json").stdout)["rows"]
+    time, signal = found.response.time, found.response.y[0]
+    step = time[1] - time[0]
+    n = round(1.0 / step)
+    rms = max(np.sqrt(np.trapezoid(signal[i:i + n + 1]**2, dx=step) / (n * step)) for i in range(len(time) - n))
+    assert row["rms_m_per_s2"] == pytest.approx(rms, rel=2e-3)
+    assert abs(signal[np.searchsorted(time, row["peak_at_s"])]) == abs(signal).max()
+    on_deck = [bridge.carries(found.system.traffic.walkers.places(t)).sum() for t in time[::20]]
+    assert row["persons_on_deck_mean"] == pytest.approx(np.mean(on_deck), rel=0.01)
+
+
+def test_rms_of_less_than_a_second_does_not_count(monkeypatch, thirty, crossed):
+    """A cosine's whole seconds have 2/√2; its first sample alone has 2."""
+    time = np.linspace(0.0, 10.0, 1001)
+    cosine = ct.TimeResponseData(time, 2.0 * np.cos(4 * np.pi * time), issiso=True)
+    known = dataclasses.replace(crossed[2], response=cosine)
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", lambda trial, rng: known)
+    row, = json.loads(run("simulate", thirty, "--json").stdout)["rows"]
+    assert row["rms_m_per_s2"] == pytest.approx(np.sqrt(2.0))
+
+
+def test_simulate_without_words_is_one_person_per_square_metre(monkeypatch, crossed):
+    calls = []
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", lambda trial, rng: calls.append((trial, rng)) or crossed[2])
+    run("simulate")
+    run("simulate", "--density", 0.3, "--frequency", 3.0, "--seed", 5, "--trial", 1)
+    assert [trial.flow for trial, _ in calls] == [hsi.CrowdFlow(density=1.0), hsi.CrowdFlow(density=0.3)]
+    assert {trial.model for trial, _ in calls} == {"MC"}
+    assert str(calls[1][0].bridge) == str(hsi.reference_bridge(frequency=3.0))
+    assert [rng.random() for _, rng in calls] == [hsi.trial_rng(1, 0).random(), hsi.trial_rng(5, 1).random()]
+
+
+def test_density_takes_the_place_of_those_in_the_file(monkeypatch, young, crossed):
+    calls = []
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", lambda trial, rng: calls.append(trial) or crossed[2])
+    run("simulate", young, "--density", 0.3)
+    assert calls[0].flow == hsi.CrowdFlow(density=0.3)
+
+
+@pytest.fixture
+def at_once(monkeypatch, crossed):
+    """The command at once: what it would compute is known."""
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", lambda trial, rng: crossed[2])
+
+
+@pytest.mark.usefixtures("at_once")
+def test_simulate_prints_a_row_and_what_it_means(thirty, crossed):
+    done = run("simulate", thirty, "--trial", 2).stdout
+    printed = " ".join(done.split())
+    for words in (f"{crossed[2].peak_acceleration:#.3g}", "n=30", "n_H", "comfort", "error", "Trial 2", "Seed: 3",
+                  "tuned to f_eff", "1-s RMS", "2.000 Hz, 0.50 %, 25000 kg"):
+        assert words in printed
+    assert max(map(len, done.split("footbridge")[0].splitlines())) <= 80
+
+
+@pytest.mark.usefixtures("at_once")
+def test_simulate_prints_csv_and_remarks(monkeypatch, thirty, crossed):
+    row, = csv.DictReader(io.StringIO(run("simulate", thirty, "--csv").stdout))
+    assert float(row["a_mc_m_per_s2"]) == crossed[2].peak_acceleration
+    odd = dataclasses.replace(crossed[2], remarks=("a remark",))
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", lambda trial, rng: odd)
+    assert "Remark: a remark." in run("simulate", thirty).stdout
+    assert json.loads(run("simulate", thirty, "--json").stdout)["rows"][0]["remarks"] == "a remark"
+
+
+def test_simulate_draws_one_simulation_in_figure_and_animation(monkeypatch, thirty, crossed, tmp_path):
+    given, calls = {}, []
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", lambda trial, rng: calls.append(trial) or crossed[2])
+    monkeypatch.setattr("hsictrl.plots.simulation_figure",
+                        lambda **words: given.update(words) or SimpleNamespace(figure=Figure()))
+    monkeypatch.setattr("hsictrl.plots.crossing_animation", lambda *words: given.update(animated=words))
+    monkeypatch.setattr("hsictrl.plots.save_animation", lambda one, path, after_each: path.touch())
+    done = run("simulate", thirty, "--trial", 2, "--figure", tmp_path / "a.png", "--animate", tmp_path / "a.gif")
+    assert done.stderr == f"wrote {tmp_path / 'a.png'}\nwrote {tmp_path / 'a.gif'}\n"
+    assert len(calls) == 1
+    assert (given["response"], given["animated"]) == (crossed[2].response, (crossed[2].system, crossed[2].response))
+    assert "30 persons on footbridge 50 m" in given["title"]
+    assert "trial 2 of seed 3" in given["title"]
+    step, empty, occupied = given["marks"].values()
+    assert (empty, step.tolist()) == (2.0, [pytest.approx(k * occupied) for k in (1, 2, 3, 4)])
+    assert given["persons"][0] == crossed[0].carries(crossed[2].system.traffic.walkers.places(0.0)).sum()
+
+
+@pytest.mark.usefixtures("at_once")
+def test_simulate_writes_files_that_open(monkeypatch, thirty, tmp_path):
+    monkeypatch.setattr("hsictrl.plots.animation.STRETCH", 0.4)
+    run("simulate", thirty, "--figure", tmp_path / "a.png", "--animate", tmp_path / "a.gif")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.png"]
+    with Image.open(tmp_path / "a.gif") as image:
+        assert image.n_frames == 11
+    with Image.open(tmp_path / "a.png") as image:
+        assert image.size == (1500, 1350)
+
+
+@pytest.mark.usefixtures("at_once")
+def test_an_interrupted_animation_leaves_nothing(monkeypatch, thirty, tmp_path):
+    def interrupt(animation, path, after_each):
+        path.write_bytes(b"GIF89a")
+        raise KeyboardInterrupt
+    monkeypatch.setattr("hsictrl.plots.save_animation", interrupt)
+    monkeypatch.setattr("hsictrl.plots.crossing_animation", lambda *words: None)
+    (tmp_path / "a.gif").write_text("old")
+    done = run("simulate", thirty, "--animate", tmp_path / "a.gif", code=130)
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.gif", "old")]
+    assert (done.stdout, done.stderr) == ("", "")
+
+
+def test_a_crossing_that_fails_ends_with_exit_code_1(monkeypatch, thirty):
+    def fail(trial, rng):
+        raise ValueError("every step frequency must be above 0, got -0.1 Hz")
+    monkeypatch.setattr(assessment.PeakTrial, "prediction", fail)
+    done = run("simulate", thirty, "--trial", 4, code=1)
+    assert done.stderr.startswith("Error: trial 4 of seed 3 failed: every step frequency must be above 0, got -0.1 Hz;")
+
+
 # paper
 
 @pytest.fixture
@@ -284,6 +441,19 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("effective --tolerance 0", "tolerance must lie in (0, 1), got 0; give a fraction, not percent"),
     ("effective --json --csv", "the output must have one form"),
     ("effective --processes -2", "processes must be at least 1, got -2"),
+    ("simulate --density 0.2 --density 0.5", "simulate takes one density, got 2: 0.2 persons/m², 0.5 persons/m²; give "
+     "one, such as --density 1.0"),
+    ("simulate TMP/good.toml", "simulate takes one density, got 5: 0.2 persons/m²,"),
+    ("simulate TMP/bad.toml", "TMP/bad.toml, line 2, [bridge] damping: damping must lie in [0, 1), got 5; give a"),
+    ("simulate --damping 0", "damping[0] must lie in (0, 1), got 0; nothing settles without"),
+    ("simulate --density 2", "density must lie in (0, 1.5], got 2; beyond 1.5 persons/m² walking is obstructed"),
+    ("simulate --trial -1", "trial must be at least 0, got -1; count trials from 0"),
+    ("simulate --json --csv", "the output must have one form"),
+    ("simulate --figure TMP/a.doc", "a figure must be a file that ends in one of .avif"),
+    ("simulate --animate TMP/a.doc", "an animation must be a file that ends in one of .gif"),
+    ("simulate --animate TMP/no/a.gif", "the output folder must exist, got TMP/no; make it first"),
+    ("simulate --figure TMP/a.gif --animate TMP/a.gif",
+     "figure and animation must be two files, got TMP/a.gif for both; rename one"),
     ("paper fig99", "name must be one of 'table1', 'fig1', 'fig2', 'fig3', 'fig4', 'claims', got 'fig99'; choose"),
     ("paper fig3 --output TMP/no", "the output folder must exist, got TMP/no; make it first"),
     ("paper fig3 --processes 0", "processes must be at least 1, got 0"),
@@ -299,7 +469,7 @@ def test_refusals(tmp_path, words, says):
     assert (result.stdout, sorted(tmp_path.iterdir())) == ("", before)
 
 
-@pytest.mark.parametrize("words", ["assess --seed x", "assess --nonsense", "simulata", "paper"])
+@pytest.mark.parametrize("words", ["assess --seed x", "assess --nonsense", "simulata", "simulate --trial x", "paper"])
 def test_wrong_words_are_refused_with_exit_code_2(words):
     result = run(*words.split(), code=2)
     assert "Error: " in result.stderr
@@ -352,6 +522,7 @@ def test_file_is_written_whole_or_not_at_all(tmp_path):
     assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.json", "old")]
 
 
-@pytest.mark.parametrize("words", [["--help"], ["assess", "--help"], ["effective", "--help"], ["paper", "--help"]])
+@pytest.mark.parametrize("words", [["--help"], ["assess", "--help"], ["effective", "--help"], ["paper", "--help"],
+                                   ["simulate", "--help"]])
 def test_help(words):
     assert "Usage: " in run(*words).stdout

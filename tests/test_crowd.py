@@ -238,6 +238,20 @@ def test_those_who_walk_beside_the_deck_do_not_stand_on_it():
     np.testing.assert_array_equal(places, [[25.0, -1.5]])
 
 
+def test_two_walkers_are_counted_by_hand():
+    """50 m at 1.25 m/s take 40 s, at 2 m/s 25 s: on the deck from 0 to 40 s and from 10 to 35 s, ends included."""
+    traffic = Traffic([walker(), walker(arrival=10.0, speed=2.0), walker(offset=1.6)])    # the last one walks beside it
+    times = [-0.1, 0.0, 9.9, 10.0, 34.9, 35.0, 35.1, 40.0, 40.1]
+    assert traffic.persons_on(BRIDGE, times).tolist() == [0, 1, 1, 2, 2, 2, 1, 1, 0]
+
+
+def test_people_are_counted_where_the_deck_carries_them():
+    traffic = drawn(CrowdFlow(density=0.5))
+    times = np.linspace(-50.0, 30.0, 41)
+    counted = [int(BRIDGE.carries(traffic.walkers.places(t)).sum()) for t in times]
+    assert traffic.persons_on(BRIDGE, times).tolist() == counted
+
+
 def test_traffic_by_hand_is_observed_from_first_arrival_to_last_departure():
     slow, fast = walker(arrival=3.0, speed=0.5), walker(arrival=1.0, speed=2.0)
     assert Traffic([slow, fast]).observed(BRIDGE) == (1.0, 103.0)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import combinations
+from pathlib import Path
 
 import control as ct
 import matplotlib
@@ -11,23 +12,31 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.animation import AbstractMovieWriter
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from PIL import Image
 
 import hsictrl as hsi
 from hsictrl.plots import (
     assessment_figure,
     contact_force_plot,
     convergence_plot,
+    crossing_animation,
     effective_map_plot,
     effective_panels,
     frf_plot,
     models_plot,
     normalised_frf_plot,
+    persons_plot,
     response_plot,
+    save_animation,
+    simulation_figure,
+    spectrum_plot,
 )
-from hsictrl.records import running_rms
+from hsictrl.records import amplitude_spectrum, running_rms
 
 HERTZ = np.linspace(2.0, 5.0, 301)
 BRIDGE = hsi.reference_bridge(frequency=3.25)
@@ -50,6 +59,8 @@ def study(scale: float, rule: hsi.StopRule = WIDE) -> hsi.Ensemble:
 
 
 RECORDS = [acceleration(2.0, "MF"), acceleration(0.5, "PMC")]
+MARKS = {"steps": [1.9, 3.8], "bridge": 2.0}
+PERSONS = np.where(TIME < 5.0, 3, 4)
 STUDIES = [study(1.0), study(0.3)]
 MAP = {f"μ = {mu}": {"frequency": np.outer([1.0, 0.9, 1.1], np.ones(301)), "damping": np.full((3, 301), mu)}
        for mu in (0.1, 0.2)}
@@ -81,6 +92,10 @@ DRAWINGS = {
     "map": (2, lambda ax: effective_map_plot(HERTZ, MAP, ax=ax)),
     "normalised": (2, lambda ax: normalised_frf_plot(
         HERTZ / 3.25, {"few": {"100": FRFS[1]}, "many": {"200": FRFS[1]}}, empty=FRFS[0], ax=ax)),
+    "spectrum": (1, lambda ax: spectrum_plot(RECORDS[0], marks=MARKS, ax=ax)),
+    "persons": (1, lambda ax: persons_plot(TIME, PERSONS, ax=ax)),
+    "simulation": (3, lambda ax: simulation_figure(
+        response=RECORDS[0], marks=MARKS, persons=PERSONS, title="Crowd", ax=ax)),
 }
 
 
@@ -123,7 +138,7 @@ def test_legends_cover_no_data_and_lie_within_the_figure(name: str) -> None:
             assert plot.figure.bbox.count_contains(legend.get_window_extent().corners()) == 4
 
 
-@pytest.mark.parametrize("name", ["assessment", "normalised"])
+@pytest.mark.parametrize("name", ["assessment", "normalised", "simulation"])
 def test_titles_of_panels_do_not_meet_the_legends(name: str) -> None:
     plot = DRAWINGS[name][1](None)
     plot.figure.canvas.draw()
@@ -258,6 +273,64 @@ def test_response_refusals() -> None:
         response_plot(both)
     with pytest.raises(TypeError, match="responses must be of type TimeResponseData, got ndarray; give predict"):
         response_plot(TIME)
+
+
+def test_people_are_drawn_as_steps_from_zero(ax: Axes) -> None:
+    line, = persons_plot(TIME, PERSONS, ax=ax).lines[0, 0]
+    np.testing.assert_array_equal(line.get_data(), [TIME, PERSONS])
+    assert (line.get_drawstyle(), ax.get_ylim()[0]) == ("steps-post", 0.0)
+
+
+def test_an_empty_deck_has_an_axis_too() -> None:
+    assert persons_plot([0.0, 1.0], [0, 0]).axes[0, 0].get_ylim()[1] > 1
+
+
+def test_persons_refusals() -> None:
+    with pytest.raises(ValueError, match="persons must be one number per time, got 2 for 3; count them with"):
+        persons_plot([0.0, 1.0, 2.0], [1, 2])
+    with pytest.raises(ValueError, match=r"persons\[0\] must be at least 0, got -1; count them"):
+        persons_plot([0.0], [-1])
+
+
+def test_spectrum_is_drawn_over_hertz_with_marks_at_their_frequencies(ax: Axes) -> None:
+    curve, steps, bridge = spectrum_plot(RECORDS[0], marks=MARKS, ax=ax).lines[0, 0]
+    np.testing.assert_array_equal(curve.get_data(), amplitude_spectrum(RECORDS[0]))
+    assert curve.get_xdata()[np.argmax(curve.get_ydata())] == pytest.approx(2.0, abs=0.1)
+    assert np.unique(steps.get_xdata()).tolist() == [1.9, 3.8]
+    assert np.unique(bridge.get_xdata()).tolist() == [2.0]
+    assert np.nanmax(steps.get_ydata()) == 1.0    # of the height of the axes
+    assert bridge.get_linewidth() < steps.get_linewidth()
+    assert ax.get_xlim() == pytest.approx((0.0, 1.1 * 3.8))
+    assert ax.get_yscale() == "log"
+
+
+def test_spectrum_without_marks_is_drawn_whole() -> None:
+    plot = spectrum_plot(RECORDS[0])
+    assert plot.axes[0, 0].get_xlim()[1] == pytest.approx(amplitude_spectrum(RECORDS[0])[0][-1])
+    assert len(plot.lines[0, 0]) == 1
+
+
+def test_silence_has_a_spectrum_to_draw() -> None:
+    silence = ct.TimeResponseData(TIME, np.zeros(1001), issiso=True)
+    spectrum_plot(silence).figure.canvas.draw()
+
+
+def test_spectrum_refusals() -> None:
+    with pytest.raises(ValueError, match="response must have one output, got 2; predict with one point"):
+        spectrum_plot(ct.TimeResponseData(TIME, np.zeros((2, 1001)), issiso=False))
+    with pytest.raises(ValueError, match=r"marks\['steps'\] must be above 0, got -1; give Hz"):
+        spectrum_plot(RECORDS[0], marks={"steps": -1.0})
+    with pytest.raises(TypeError, match="response must be of type TimeResponseData, got ndarray; give predict"):
+        spectrum_plot(TIME)
+
+
+def test_simulation_figure_composes_the_three_plots() -> None:
+    plot = DRAWINGS["simulation"][1](None)
+    assert plot.figure.get_suptitle() == "Crowd"
+    heads = [axis.get_title("left") for axis in plot.axes[:, 0]]
+    assert heads == ["(a) Acceleration", "(b) Amplitude spectrum", "(c) People on the deck"]
+    assert [entries(plot, row)[0] for row in range(2)] == ["MF", "steps"]
+    assert [len(lines) for lines in plot.lines[:, 0]] == [3, 3, 1]
 
 
 # studies
@@ -479,3 +552,150 @@ def test_schematic_refusals() -> None:
         models_plot(BRIDGE, {"a": SCENES["one"] | {"added_mass_kg": -1.0}})
     with pytest.raises(ValueError, match="ax must hold 4 axes, got 1; make them with"):
         models_plot(BRIDGE, SCENES, ax=plt.subplots()[1])
+
+
+# animation
+
+LONG = hsi.Footbridge.simply_supported(length=40.0, width=3.0, mass=40e3, frequency=2.0, damping=0.005, n_modes=2)
+CROWD = hsi.moving_crowd(LONG, hsi.Traffic([
+    hsi.Walker(force=STEADY, step_frequency=2.0, speed=1.0, arrival=arrival) for arrival in (0.0, 10.0)]))
+MOVED = ct.TimeResponseData(     # z₁ = 0.01 t, z₂ = −0.03 t, and an acceleration with its peak at 30 s
+    np.linspace(0.0, 60.0, 601), 5.0 - 0.1 * abs(np.linspace(0.0, 60.0, 601) - 30.0),
+    np.outer([0.01, -0.03, 0.0, 0.0], np.linspace(0.0, 60.0, 601)), issiso=True)
+
+
+class Watcher(AbstractMovieWriter):
+    """Keeps what is drawn, by the title of the line, from picture to picture."""
+
+    def setup(self, fig, outfile, dpi=None):
+        self.fig, self.seen, self.outfile, self.dpi = fig, [], outfile, dpi
+
+    def grab_frame(self, **words):
+        deck, history = self.fig.axes
+        self.seen.append({"title": deck.get_title("left"), "past": history.lines[0].get_data(),
+                          **{line.get_label(): line.get_data() for line in deck.lines}})
+
+    def finish(self):
+        pass
+
+
+def watched(**words) -> list[dict]:
+    watcher = Watcher(fps=25)
+    crossing_animation(CROWD, MOVED, **words).save("nowhere.gif", writer=watcher)
+    return watcher.seen
+
+
+def test_the_deck_is_the_sum_of_its_modes_downwards() -> None:
+    """At 35.04 s, by hand: m = 20 t of both modes, w = (0.3504 sin πx/L − 1.0512 sin 2πx/L)/√20000 m."""
+    picture = watched(span=(35.0, 35.2))[1]
+    x, w = picture["deck"]
+    by_hand = 1e3 * (0.3504 * np.sin(np.pi * x / 40.0) - 1.0512 * np.sin(2 * np.pi * x / 40.0)) / np.sqrt(20e3)
+    np.testing.assert_allclose(w, by_hand, atol=1e-9)
+    assert picture["title"] == "35.04 s, 2 on the deck"
+    ax, _ = plt.gcf().axes
+    assert ax.get_ylim()[0] > 0 > ax.get_ylim()[1]     # positive downwards
+    assert ax.get_ylabel() == "Deflection [mm]"
+
+
+def test_walkers_ride_on_the_deck() -> None:
+    """One has left after 40 s; the other is at 1 m/s · (t − 10 s)."""
+    pictures = watched(span=(39.0, 41.0))
+    for picture, places in ((pictures[0], [39.0, 29.0]), (pictures[-1], [31.0])):
+        x, w = picture["people"]
+        assert x == pytest.approx(places)
+        np.testing.assert_allclose(w, np.interp(x, *picture["deck"]), rtol=1e-2)
+
+
+def test_the_acceleration_is_drawn_up_to_now() -> None:
+    for i, picture in enumerate(watched(span=(20.0, 21.0))):
+        time, signal = picture["past"]
+        assert time[-1] == pytest.approx(20.0 + i / 25)
+        assert np.all(np.diff(time) > 0)
+        np.testing.assert_allclose(signal, 2.0 + 0.1 * time, rtol=1e-9)    # 5 − 0.1 (30 − t)
+
+
+def test_the_stated_factor_is_that_of_the_picture() -> None:
+    crossing_animation(CROWD, MOVED, span=(20.0, 20.2)).save("nowhere.gif", writer=Watcher(fps=25))
+    ax = plt.gcf().axes[0]
+    factor = float(ax.get_title("right").removeprefix("deflection × ").replace(" ", ""))
+    (x0, y0), (x1, y1) = ax.transData.transform([(0.0, 0.0), (1.0, 1000.0)])    # 1 m along, 1 m down
+    assert (y0 - y1) / (x1 - x0) == pytest.approx(factor, rel=1e-3)
+    largest = 20.2 * np.max(abs(0.01 * np.sin(np.linspace(0, np.pi, 999))
+                                - 0.03 * np.sin(np.linspace(0, 2 * np.pi, 999)))) / np.sqrt(20e3)
+    assert 0.03 <= factor * largest / 40.0 <= 0.08
+
+
+def test_eight_seconds_about_the_peak_are_shown() -> None:
+    pictures = watched(rate=1.0)
+    assert [picture["title"].split()[0] for picture in pictures] == [f"{time}.00" for time in range(26, 35)]
+
+
+@pytest.mark.parametrize(("peak", "span"), [(1.0, (0.0, 8.0)), (59.0, (52.0, 60.0))])
+def test_a_peak_near_an_end_shows_the_eight_seconds_there(peak: float, span: tuple[float, float]) -> None:
+    late = ct.TimeResponseData(MOVED.time, np.exp(-abs(MOVED.time - peak)), MOVED.x, issiso=True)
+    watcher = Watcher(fps=1)
+    crossing_animation(CROWD, late, rate=1.0).save("nowhere.gif", writer=watcher)
+    assert [float(one["title"].split()[0]) for one in watcher.seen] == np.arange(span[0], span[1] + 1).tolist()
+
+
+def test_supports_stand_where_the_spans_meet() -> None:
+    spans = hsi.Footbridge.beam(spans=[20.0, 30.0], width=3.0, mass=50e3, frequency=2.0, damping=0.005)
+    crowd = hsi.moving_crowd(spans, CROWD.traffic)
+    response = ct.TimeResponseData(MOVED.time, MOVED.outputs, np.zeros((2, 601)), issiso=True)
+    crossing_animation(crowd, response, span=(0.0, 0.1)).save("nowhere.gif", writer=Watcher(fps=25))
+    supports = next(line for line in plt.gcf().axes[0].lines if line.get_marker() not in ("None", "o", None))
+    assert supports.get_xdata().tolist() == [0.0, 20.0, 50.0]
+
+
+def test_words_and_panels_of_an_animation_do_not_meet() -> None:
+    boxes = []
+
+    class Boxes(Watcher):
+        def grab_frame(self, **words):
+            boxes.append([ax.get_tightbbox() for ax in self.fig.axes])
+            assert not isinstance(self.fig.get_layout_engine(), ConstrainedLayoutEngine)
+            ax = self.fig.axes[0]
+            assert not ax._left_title.get_window_extent().overlaps(ax._right_title.get_window_extent())
+            assert all(self.fig.bbox.count_contains(box.corners()) == 4 for box in boxes[-1])
+    crossing_animation(CROWD, MOVED, span=(39.9, 40.1)).save("nowhere.gif", writer=Boxes(fps=25))
+    assert len(boxes) == 6
+    assert not any(deck.overlaps(history) for deck, history in boxes)
+
+
+def test_a_gif_holds_every_picture_in_real_time(tmp_path: Path) -> None:
+    seen = []
+    animation = crossing_animation(CROWD, MOVED, span=(20.0, 20.4))
+    save_animation(animation, tmp_path / "a.gif", after_each=lambda *count: seen.append(count))
+    with Image.open(tmp_path / "a.gif") as image:
+        assert (image.n_frames, image.info["duration"]) == (11, 40)
+    assert seen == [(i, 11) for i in range(11)]
+
+
+def test_a_simulation_is_animated_as_it_comes(tmp_path: Path) -> None:
+    found = hsi.simulate(CROWD).response
+    watcher = Watcher(fps=25)
+    crossing_animation(CROWD, found, span=(20.0, 20.1)).save("nowhere.gif", writer=watcher)
+    at_first = int(np.searchsorted(found.time, 20.0))
+    x, w = watcher.seen[0]["deck"]
+    np.testing.assert_allclose(w, 1e3 * LONG.participation(x) @ found.x[:2, at_first], rtol=0.02, atol=1e-3)
+
+
+def test_animation_refusals(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"response must hold z and dz of 2 mode\(s\), .* got none; give simulate"):
+        crossing_animation(CROWD, RECORDS[0])
+    with pytest.raises(ValueError, match=r"states of shape \(4, 601\), got \(2, 601\); give simulate"):
+        crossing_animation(CROWD, ct.TimeResponseData(MOVED.time, MOVED.outputs, np.zeros((2, 601)), issiso=True))
+    with pytest.raises(ValueError, match=r"span must be \(start, end\) within 0 to 60 s, got \(50.0, 61.0\); choose"):
+        crossing_animation(CROWD, MOVED, span=(50.0, 61.0))
+    with pytest.raises(ValueError, match="rate must be above 0, got 0; give pictures per second"):
+        crossing_animation(CROWD, MOVED, rate=0)
+    with pytest.raises(TypeError, match="crowd must be of type MovingCrowd, got Footbridge; make it"):
+        crossing_animation(LONG, MOVED)
+    assert plt.get_fignums() == []
+    animation = crossing_animation(CROWD, MOVED, span=(0.0, 0.1))
+    with pytest.raises(ValueError, match=r"ending of the file must be one of 'gif'.*, got 'doc'; choose one"):
+        save_animation(animation, tmp_path / "a.doc")
+    save_animation(animation, tmp_path / "a.gif")
+    assert plt.get_fignums() == []
+    with pytest.raises(TypeError, match="figure of ax must be of type Figure, got SubFigure; make it"):
+        crossing_animation(CROWD, MOVED, ax=plt.figure().subfigures().subplots(2))

@@ -31,6 +31,7 @@ from hsictrl import (
     effective,
     predict,
     reference_bridge,
+    simulate,
     tune,
 )
 from hsictrl.bridge import Shape
@@ -461,3 +462,13 @@ def test_a_peak_at_the_edge_is_not_extrapolated(values):
 def test_the_peak_of_a_sampled_sine(phase):
     times = np.arange(0, 10, 1 / 40)
     assert signal(np.sin(2 * np.pi * times + phase)).peak_acceleration == pytest.approx(1.0, abs=2e-5)
+
+
+def test_mc_keeps_the_states_and_the_step_of_its_simulation():
+    bridge = reference_bridge(frequency=2.0)
+    found = predict("MC", bridge, CrowdFlow(persons=15).sample(bridge, rng=np.random.default_rng(1)))
+    by_hand = simulate(found.system)
+    assert (found.step, found.error) == (by_hand.step, by_hand.error)
+    np.testing.assert_array_equal(found.response.x, by_hand.response.x)
+    assert found.response.state_labels == ["z[0]", "dz[0]"]
+    assert predict("MF", bridge, found.system.traffic).step is None

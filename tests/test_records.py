@@ -1,10 +1,10 @@
-"""Truth here: the RMS of a sine, of a constant, and ISO 2631-1's integral by brute force."""
+"""Truth here: the RMS of a sine, of a constant, ISO 2631-1's integral by brute force; spectra in closed form."""
 
 import control as ct
 import numpy as np
 import pytest
 
-from hsictrl.records import running_rms
+from hsictrl.records import amplitude_spectrum, running_rms
 
 
 def record(time: np.ndarray, signal: np.ndarray) -> ct.TimeResponseData:
@@ -76,3 +76,45 @@ def test_refusals() -> None:
         running_rms(record(time, time), duration=0.0)
     with pytest.raises(ValueError, match=r"times of a record must increase, got 1 s and then 0.9 s; sort"):
         running_rms(record(time[::-1], time))
+
+
+# amplitude spectrum
+
+@pytest.mark.parametrize("n", [1000, 1001])
+def test_a_sine_at_the_centre_of_a_bin_shows_its_amplitude(n: int) -> None:
+    """A Hann window spreads a line as 1/2, 1, 1/2 over three bins, and over no more."""
+    time = 5.0 + 0.01 * np.arange(n)
+    signal = 3.0 * np.sin(2 * np.pi * 20 / (0.01 * n) * time + 0.4)
+    frequencies, amplitudes = amplitude_spectrum(record(time, signal))
+    exact = np.zeros(n // 2 + 1)
+    exact[19:22] = 1.5, 3.0, 1.5
+    np.testing.assert_allclose(amplitudes, exact, atol=1e-9)
+    np.testing.assert_allclose(frequencies, np.arange(n // 2 + 1) / (0.01 * n), rtol=1e-9)
+
+
+def test_halfway_between_bins_a_sine_shows_8_over_3_pi() -> None:
+    time = 0.01 * np.arange(4000)
+    amplitudes = amplitude_spectrum(record(time, np.sin(2 * np.pi * 400.5 / 40.0 * time)))[1]
+    np.testing.assert_allclose(amplitudes[400:402], 8 / (3 * np.pi), rtol=1e-4)
+
+
+def test_mean_and_nyquist_frequency_have_one_side() -> None:
+    """2 + 3 (-1)^k: the lines at both ends are themselves, each neighbour holds half of two sides."""
+    signal = 2.0 + 3.0 * (-1.0)**np.arange(64)
+    amplitudes = amplitude_spectrum(record(np.arange(64) / 10, signal))[1]
+    np.testing.assert_allclose(amplitudes, [2.0, 2.0, *[0.0] * 29, 3.0, 3.0], atol=1e-12)
+
+
+def test_spectrum_has_a_row_per_output() -> None:
+    time = np.arange(400) / 100
+    both = np.array([np.sin(2 * np.pi * 5.0 * time), 2.0 * np.cos(2 * np.pi * 10.0 * time)])
+    frequencies, amplitudes = amplitude_spectrum(record(time, both))
+    assert frequencies[np.argmax(amplitudes, axis=1)] == pytest.approx([5.0, 10.0])
+    np.testing.assert_allclose(amplitudes.max(axis=1), [1.0, 2.0])
+
+
+def test_spectrum_refusals() -> None:
+    with pytest.raises(TypeError, match="response must be of type TimeResponseData, got list; give"):
+        amplitude_spectrum([1.0])
+    with pytest.raises(ValueError, match=r"times of a record must increase evenly, got steps from 1 to 2 s; use"):
+        amplitude_spectrum(record(np.array([0.0, 1.0, 3.0]), np.zeros(3)))

@@ -1,4 +1,4 @@
-"""The figure of an assessment; imported when one is asked for."""
+"""Figures and animations of commands; imported when one is asked for."""
 
 from __future__ import annotations
 
@@ -7,15 +7,19 @@ from typing import cast
 
 import control as ct
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hsictrl import plots
+from hsictrl._progress import progress
 from hsictrl.assessment import Assessment, PeakTrial
+from hsictrl.cli.crossing import Crossing
 from hsictrl.cli.description import Description
 from hsictrl.coupling import OccupiedBridge
 from hsictrl.resonance import effective, frf
 from hsictrl.study import trial_rng
 
 BAND, LINES = (0.5, 1.5), 2001   # of the empty bridge's frequency
+MULTIPLES = 4                    # of the step frequency, marked on a spectrum
 
 
 def draw(path: Path, found: Assessment, case: Description) -> None:
@@ -28,6 +32,31 @@ def draw(path: Path, found: Assessment, case: Description) -> None:
         responses=[one.response for one in first], ensembles=[found.mf, found.pmc],
         title=f"{found.flow} on {str(case.bridge).splitlines()[0]}; (a), (b): trial 0 of seed {case.seed}")
     plots.save(plot, path)
+
+
+def draw_crossing(path: Path, crossing: Crossing) -> None:
+    """Draw acceleration, spectrum and people of one crossing into a file."""
+    response = crossing.prediction.response
+    plot = plots.simulation_figure(
+        response=response, marks=_marks(crossing), title=crossing.title,
+        persons=crossing.crowd.traffic.persons_on(crossing.crowd.bridge, response.time))
+    plots.save(plot, path)
+
+
+def animate_crossing(path: Path, crossing: Crossing) -> None:
+    """Show the eight seconds about the peak in motion, in a file."""
+    animation = plots.crossing_animation(crossing.crowd, crossing.prediction.response)
+    with progress() as bar:
+        task = bar.add_task("pictures", total=None)
+        plots.save_animation(animation, path, after_each=lambda i, n: bar.update(task, completed=i + 1, total=n))
+
+
+def _marks(crossing: Crossing) -> dict[str, ArrayLike]:
+    """Frequencies that explain a spectrum, by their labels."""
+    step, empty = crossing.crowd.traffic.target, crossing.crowd.bridge.modes[0].frequency
+    return {rf"multiples of $f_l$ = {step:.3f} Hz": step * np.arange(1, MULTIPLES + 1),
+            rf"$f_\mathrm{{B}}$ = {empty:.3f} Hz": empty,
+            rf"$f_\mathrm{{eff}}$ = {crossing.standing.frequency:.3f} Hz": crossing.standing.frequency}
 
 
 def _frf(system: OccupiedBridge) -> ct.FrequencyResponseData:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -23,9 +23,19 @@ def checked_figure(path: Path) -> Path:
     """Return the path if a figure can be written there."""
     from hsictrl.plots import file_endings  # only now: no other command needs it
 
-    endings = file_endings()
+    return _checked_file("a figure", path, file_endings())
+
+
+def checked_animation(path: Path) -> Path:
+    """Return the path if an animation can be written there."""
+    from hsictrl.plots import animation_endings
+
+    return _checked_file("an animation", path, animation_endings())
+
+
+def _checked_file(name: str, path: Path, endings: Sequence[str]) -> Path:
     if path.suffix.lstrip(".") not in endings or path.is_dir():
-        raise ValueError(f"a figure must be a file that ends in one of .{', .'.join(endings)}, got {path}; rename it")
+        raise ValueError(f"{name} must be a file that ends in one of .{', .'.join(endings)}, got {path}; rename it")
     checked_folder(path.parent)
     return path
 

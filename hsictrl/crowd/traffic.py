@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, InitVar, dataclass, replace
 from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -229,6 +230,37 @@ class Traffic:
         places, order = self.standing[1], np.argsort(self.walkers.arrival, kind="stable")
         last = order[max(0, len(order) - len(places)):]
         return self.walkers.part(last), places[:len(last)]
+
+    def persons_on(self, bridge: Footbridge, times: Any) -> NDArray[np.intp]:
+        """How many walkers are on the deck.
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge, for its deck.
+        times : array_like, shape (m,)
+            Times [s].
+
+        Returns
+        -------
+        array of int, shape (m,)
+            n_H(t) [-].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.walking import HarmonicForce
+        >>> early, late = (Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, arrival=t)
+        ...                for t in (0.0, 30.0))
+        >>> Traffic([early, late]).persons_on(reference_bridge(), [-1.0, 0.0, 35.0, 41.0, 71.0])
+        array([0, 1, 2, 1, 0])
+        """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+        times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
+        across = np.column_stack([np.zeros(len(self.walkers)), self.walkers.offset])
+        walkers = self.walkers.part(bridge.carries(across))
+        left = np.searchsorted(np.sort(walkers.arrival + bridge.length / walkers.speed), times, side="left")
+        return np.searchsorted(np.sort(walkers.arrival), times, side="right") - left
 
     def _frozen(self, bridge: Footbridge) -> tuple[Walkers, Array]:
         """Walkers on the deck in the middle of the window, and where they are."""

@@ -6,15 +6,18 @@ right, and leave the place at the left to a title: ``ax.set_title("...", loc="le
 in pyplot: close them with ``matplotlib.pyplot.close(plot.figure)``.
 """
 
-from hsictrl.plots.composed import assessment_figure
+from hsictrl.plots.animation import crossing_animation
+from hsictrl.plots.composed import assessment_figure, simulation_figure
 from hsictrl.plots.convergence import convergence_plot
 from hsictrl.plots.effective_map import effective_map_plot, effective_panels
-from hsictrl.plots.files import file_endings, save
+from hsictrl.plots.files import animation_endings, file_endings, save, save_animation
 from hsictrl.plots.frequency import frf_plot, normalised_frf_plot
-from hsictrl.plots.history import response_plot
+from hsictrl.plots.history import persons_plot, response_plot
 from hsictrl.plots.schematic import contact_force_plot, models_plot
+from hsictrl.plots.spectrum import spectrum_plot
 
 __all__ = [
-    "assessment_figure", "contact_force_plot", "convergence_plot", "effective_map_plot", "effective_panels",
-    "file_endings", "frf_plot", "models_plot", "normalised_frf_plot", "response_plot", "save",
+    "animation_endings", "assessment_figure", "contact_force_plot", "convergence_plot", "crossing_animation",
+    "effective_map_plot", "effective_panels", "file_endings", "frf_plot", "models_plot", "normalised_frf_plot",
+    "persons_plot", "response_plot", "save", "save_animation", "simulation_figure", "spectrum_plot",
 ]

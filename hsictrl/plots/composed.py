@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import control as ct
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from hsictrl.plots import _canvas as canvas
 from hsictrl.plots.convergence import convergence_plot
 from hsictrl.plots.frequency import frf_plot
-from hsictrl.plots.history import response_plot
+from hsictrl.plots.history import persons_plot, response_plot
+from hsictrl.plots.spectrum import spectrum_plot
 from hsictrl.resonance import EffectiveProperties
 from hsictrl.study import Ensemble
 
@@ -73,5 +75,54 @@ def assessment_figure(
               convergence_plot(ensembles, labels=labels, ax=axes[2, 0])]
     settles = f"Convergence of {ensembles[0].rule.labels[0]}"
     canvas.head(axes.flat, ["Frequency response", "Acceleration", settles])
+    axes[0, 0].figure.suptitle(title)
+    return canvas.control_plot([one.lines[0, 0] for one in panels], axes, [one.legend[0, 0] for one in panels])
+
+
+def simulation_figure(
+    *, response: ct.TimeResponseData, marks: Mapping[str, ArrayLike], persons: ArrayLike, title: str,
+    ax: Sequence[Axes] | np.ndarray | None = None,
+) -> ct.ControlPlot:
+    """Draw how a crowd crosses in three panels: acceleration, its amplitude spectrum, and people on the deck.
+
+    Parameters
+    ----------
+    response : control.TimeResponseData
+        The acceleration [m/s², s].
+    marks : mapping of str to float or array_like
+        As in `spectrum_plot` [Hz].
+    persons : array_like, shape (m,)
+        People on the deck at the times of the response [-].
+    title : str
+        Title of the figure.
+    ax : array or sequence of matplotlib.axes.Axes, optional
+        Three axes; those of a new figure if not given.
+
+    Returns
+    -------
+    control.ControlPlot
+        One row per panel.
+
+    Raises
+    ------
+    ValueError
+        If `ax` holds more or fewer than three axes, or people are not counted once for each time.
+
+    Examples
+    --------
+    >>> import hsictrl as hsi
+    >>> from matplotlib.figure import Figure
+    >>> bridge = hsi.reference_bridge(frequency=2.0)
+    >>> traffic = hsi.Traffic([hsi.Walker(force=hsi.HarmonicForce([0.43]), step_frequency=2.0, speed=1.25)])
+    >>> response = hsi.simulate(hsi.moving_crowd(bridge, traffic)).response
+    >>> plot = simulation_figure(response=response, marks={"bridge": 2.0}, title="One walker", ax=Figure().subplots(3),
+    ...                          persons=traffic.persons_on(bridge, response.time))
+    >>> plot.axes.shape
+    (3, 1)
+    """
+    axes = canvas.several_axes(ax, 3, figsize=(10.0, 9.0))
+    panels = [response_plot(response, ax=axes[0, 0]), spectrum_plot(response, marks=marks, ax=axes[1, 0]),
+              persons_plot(response.time, persons, ax=axes[2, 0])]
+    canvas.head(axes.flat, ["Acceleration", "Amplitude spectrum", "People on the deck"])
     axes[0, 0].figure.suptitle(title)
     return canvas.control_plot([one.lines[0, 0] for one in panels], axes, [one.legend[0, 0] for one in panels])

@@ -1,12 +1,18 @@
-"""Plots as files."""
+"""Plots and animations as files."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import control as ct
 import matplotlib.pyplot as plt
+from matplotlib.animation import FuncAnimation, writers
 from matplotlib.backend_bases import FigureCanvasBase
+
+from hsictrl import _checks as check
+
+WRITERS = {"gif": "pillow", "mp4": "ffmpeg"}
 
 
 def file_endings() -> tuple[str, ...]:
@@ -48,3 +54,53 @@ def save(plot: ct.ControlPlot, path: Path) -> None:
     """
     plot.figure.savefig(path, dpi=150)
     plt.close(plot.figure)
+
+
+def animation_endings() -> tuple[str, ...]:
+    """Endings of files into which an animation can be saved on this machine.
+
+    Returns
+    -------
+    tuple of str
+        Without the dot; mp4 is among them where ffmpeg is installed.
+
+    Examples
+    --------
+    >>> "gif" in animation_endings()
+    True
+    """
+    return tuple(ending for ending, writer in WRITERS.items() if writers.is_available(writer))
+
+
+def save_animation(
+    animation: FuncAnimation, path: Path, *, after_each: Callable[[int, int], object] | None = None,
+) -> None:
+    """Write an animation into a file, at the rate for which it was made, and close its figure.
+
+    Parameters
+    ----------
+    animation : matplotlib.animation.FuncAnimation
+        What `crossing_animation` returned.
+    path : pathlib.Path
+        The file; its ending chooses the format.
+    after_each : callable, optional
+        Called after each picture with its index and the number of pictures.
+
+    Raises
+    ------
+    ValueError
+        If no writer on this machine knows the ending.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from matplotlib.figure import Figure
+    >>> figure = Figure(figsize=(2.0, 1.0))
+    >>> path = Path(tempfile.mkdtemp()) / "empty.gif"
+    >>> save_animation(FuncAnimation(figure, lambda time: [], frames=3), path)
+    >>> path.exists()
+    True
+    """
+    ending = check.choice("ending of the file", path.suffix.lstrip("."), animation_endings())
+    animation.save(path, writer=WRITERS[ending], dpi=100, progress_callback=after_each)
+    plt.close(animation._fig)  # type: ignore[attr-defined]  # it has no public name

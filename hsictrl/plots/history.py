@@ -1,4 +1,4 @@
-"""Accelerations over time."""
+"""Accelerations and people over time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import control as ct
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike
 
+from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.plots import _canvas as canvas
 from hsictrl.records import running_rms
@@ -61,6 +64,48 @@ def response_plot(
     return canvas.control_plot([lines], np.array([[ax]]), [canvas.legend_above(ax, columns)])
 
 
+def persons_plot(times: ArrayLike, persons: ArrayLike, *, ax: Axes | None = None) -> ct.ControlPlot:
+    """Draw how many people are on the deck, as steps.
+
+    Parameters
+    ----------
+    times : array_like, shape (m,)
+        Times [s].
+    persons : array_like, shape (m,)
+        People on the deck at these times, as `Traffic.persons_on` counts them [-].
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; on a new figure if not given.
+
+    Returns
+    -------
+    control.ControlPlot
+
+    Raises
+    ------
+    ValueError
+        If people are not counted once for each time.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = persons_plot([0.0, 1.0, 2.0], [3, 4, 4], ax=Figure().subplots())
+    >>> plot.axes[0, 0].get_ylabel()
+    'People on the deck [-]'
+    """
+    times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
+    persons = check.numbers("persons", persons, least=0, ndim=1, remedy="count them with traffic.persons_on")
+    if len(persons) != len(times):
+        raise ValueError(f"persons must be one number per time, got {len(persons)} for {len(times)}; "
+                         "count them with traffic.persons_on(bridge, times)")
+    ax = canvas.one_axes(ax)
+    canvas.grid(ax)
+    line, = ax.plot(times, persons, drawstyle="steps-post", color=canvas.INK, linewidth=1.4, label="people")
+    ax.set(xlabel="Time [s]", ylabel="People on the deck [-]")
+    ax.set_ylim(0, 1.1 * max(float(np.max(persons)), 1.0))
+    ax.yaxis.set_major_locator(MaxNLocator(integer=True))
+    return canvas.control_plot([[line]], np.array([[ax]]), [None])
+
+
 def _record(ax: Axes, index: int, record: ct.TimeResponseData, label: str) -> tuple[Line2D, Line2D, Line2D]:
     """The trace, its running RMS and its peak."""
     time, signal = record.time, np.ravel(record.outputs)
@@ -80,8 +125,13 @@ def _peak(ax: Axes, index: int, time: Array, signal: Array) -> Line2D:
 
 def _checked(responses: object) -> list[ct.TimeResponseData]:
     records = canvas.one_or_several("responses", responses, ct.TimeResponseData, "give predict(...).response")
-    for record in records:
-        if np.ndim(record.outputs) > 1 and len(record.outputs) != 1:
-            raise ValueError(f"responses must have one output, got {len(record.outputs)}; "
-                             "predict with one point in sense_at")
-    return records
+    return [one_output("responses", record) for record in records]
+
+
+def one_output(name: str, response: ct.TimeResponseData) -> ct.TimeResponseData:
+    """Return the response if it has one output."""
+    check.instance(name, response, ct.TimeResponseData, "give predict(...).response")
+    if np.ndim(response.outputs) > 1 and len(response.outputs) != 1:
+        raise ValueError(f"{name} must have one output, got {len(response.outputs)}; "
+                         "predict with one point in sense_at")
+    return response

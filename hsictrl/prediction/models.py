@@ -34,7 +34,8 @@ class Prediction:
     model : str
         Name of the model.
     response : control.TimeResponseData
-        Acceleration at the antinode of the first mode, or at `sense_at`, over the observed window [m/s², s].
+        Acceleration at the antinode of the first mode, or at `sense_at`, over the observed window; that of MC holds
+        the states of the modes too, as `simulate` does [m/s², s].
     system : OccupiedBridge or MovingCrowd
         The system that responds: the empty bridge for SF and MF, the one that carries the crowd's mass for
         MFAM, the occupied one for PMC, the time-varying one for MC.
@@ -43,6 +44,8 @@ class Prediction:
     error : float, optional
         Estimated error of MC's accelerations, the largest over the window relative to their peak; the other models
         take no steps in time [-].
+    step : float, optional
+        Step that MC took [s].
 
     Examples
     --------
@@ -59,6 +62,7 @@ class Prediction:
     system: OccupiedBridge | MovingCrowd
     remarks: tuple[str, ...]
     error: float | None = None
+    step: float | None = None
 
     def __str__(self) -> str:
         return f"{self.model}: {self.peak_acceleration:.3f} m/s²"
@@ -177,8 +181,8 @@ def _stepped(system: OccupiedBridge, traffic: Traffic, times: Array | None) -> P
     crowd = moving_crowd(system.bridge, traffic)
     found = simulate(crowd, times, sense_at=system.sense_at)
     coarse = () if found.error <= TOLERANCE else (f"the estimated error is {found.error:.1g} of the peak",)
-    return Prediction(model="MC", system=crowd, remarks=traffic.remarks + coarse, error=found.error,
-                      response=_response(system, found.response.time, found.response.y))
+    return Prediction(model="MC", system=crowd, remarks=traffic.remarks + coarse, error=found.error, step=found.step,
+                      response=_response(system, found.response.time, found.response.y, found.response))
 
 
 def _moving(
@@ -208,9 +212,12 @@ def _prediction(system: OccupiedBridge, times: Array, response: Array, remarks: 
     return Prediction(model=system.name, system=system, remarks=remarks, response=_response(system, times, response))
 
 
-def _response(system: OccupiedBridge, times: Array, response: Array) -> ct.TimeResponseData:
+def _response(
+    system: OccupiedBridge, times: Array, response: Array, stepped: ct.TimeResponseData | None = None,
+) -> ct.TimeResponseData:
+    states, names = (None, None) if stepped is None else (stepped.x, stepped.state_labels)
     return ct.TimeResponseData(
-        times, response, output_labels=system.output_labels, issiso=len(response) == 1,
+        times, response, states, output_labels=system.output_labels, state_labels=names, issiso=len(response) == 1,
         plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration")
 
 

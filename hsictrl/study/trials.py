@@ -8,11 +8,10 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl._progress import progress
 from hsictrl.study.ensembles import Ensemble
 from hsictrl.study.rules import Judgement, PercentileRule, StopRule, judged
 
@@ -65,7 +64,7 @@ def monte_carlo(
     """
     _check_study(trial, rule, seed, executor, max_trials)
     samples: list[Array] = []
-    with _progress() as bar:
+    with progress() as bar:
         task = bar.add_task(label, total=None)
         for n in checkpoints(rule, max_trials):
             for value in _values(trial, seed, range(len(samples), n), executor):
@@ -177,10 +176,3 @@ def _check_study(trial: Trial, rule: StopRule, seed: int, executor: Executor | N
     check.whole("max_trials", max_trials, least=1, remedy="allow at least one trial")
     if executor is not None:
         check.instance("executor", executor, Executor, "give one of concurrent.futures, or None to run in place")
-
-
-def _progress() -> Progress:
-    console = Console(stderr=True)
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}"), TimeElapsedColumn()
-    # not console.is_terminal, which FORCE_COLOR makes true in the logs of CI
-    return Progress(*columns, console=console, transient=True, disable=not console.file.isatty())
