@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from hsictrl._checks import DIRECTIONS, Array
@@ -18,10 +17,6 @@ TABLES_SUFFICE = 0.01     # s; at shorter steps the tables of the forces are to 
 
 # quadrature over (0, 1), exact for polynomials of degree 11
 NODES, WEIGHTS = (1 + np.polynomial.legendre.leggauss(6)[0]) / 2, np.polynomial.legendre.leggauss(6)[1] / 2
-# forcing as polynomials in t/h of its values at the stages (Krogstad 2005), at the nodes and by their weights:
-# of the first; of the first and the second; of the first and the third; of all, where the middle ones share
-HALF = WEIGHTS * polyval(NODES, np.array([[1, 0], [1, -2], [0, 2]]).T)
-WHOLE = WEIGHTS * polyval(NODES, np.array([[1, -2, 0], [0, 2, 0], [1, -3, 2], [0, 2, -2], [0, -1, 2]]).T)
 
 Indices = NDArray[np.intp]
 
@@ -70,8 +65,8 @@ class Deck:
             used=0, paths=np.full((3, seats), np.inf), shapes=np.zeros((seats, orders, n_m, POINTS)),
             bodies=np.zeros((4, seats)), combs=np.zeros((seats, 4)), periods=np.zeros((2, seats)))
         modes = np.stack([bridge.omega**2, 2 * bridge.damping * bridge.omega])
-        alone = self._weights(*modes)
-        self.bridge = Bridge(bridge.length, modes, np.concatenate([alone, np.zeros((2, 24, seats))], axis=2))
+        alone = self._motions(*modes)
+        self.bridge = Bridge(bridge.length, modes, np.concatenate([alone, np.zeros((3, 7, seats))], axis=2))
         self.fine, self.coarse = np.zeros((2, n_m + seats)), np.zeros((2, n_m + seats))
 
     def enter(self, block: int) -> None:
@@ -104,7 +99,7 @@ class Deck:
     def _seat_bodies(self, new: Indices, seats: Indices) -> None:
         self.contacts.bodies[:, seats] = self._bodies[:, new]
         places = self._crowd.bridge.n_modes + seats
-        self.bridge.weights[:, :, places] = self._weights(*self._bodies[:2, new])
+        self.bridge.motions[:, :, places] = self._motions(*self._bodies[:2, new])
         self.fine[:, places] = self.coarse[:, places] = 0.0
 
     def _seat_forces(self, new: Indices) -> None:
@@ -117,29 +112,26 @@ class Deck:
             self.contacts.periods[0, seats] = force.spacing * force.step_frequency
             self.contacts.periods[1, seats] = tables.shape[1] - 4
 
-    def _weights(self, stiffness: Array, damping: Array) -> Array:
-        return np.stack([step_weights(stiffness, damping, factor * self._step) for factor in (1, 2)])
+    def _motions(self, stiffness: Array, damping: Array) -> Array:
+        return np.stack([motion(stiffness, damping, factor * self._step) for factor in (0.5, 1.0, 2.0)])
 
 
-def step_weights(stiffness: Array, damping: Array, h: float) -> Array:
-    """Weights of a step of the kernel for oscillators ẍ = −stiffness x − damping ẋ + n, (24, n); see `kernel`."""
-    half = [_free(stiffness, damping, h / 2), _forced(stiffness, damping, h / 2, HALF)]
-    whole = [_free(stiffness, damping, h), _forced(stiffness, damping, h, WHOLE)]
-    return np.concatenate(half + whole)
+def motion(stiffness: Array, damping: Array, time: float) -> Array:
+    """Exact motion of oscillators ẍ = −stiffness x − damping ẋ + n over some time, (7, n).
+
+    Rows xx, xẋ, ẋx and ẋẋ of free motion, and the places to which forcings n = 1, τ and τ² take them from rest, τ
+    being the part of the time that has gone by.
+    """
+    kicks = _free(stiffness, damping, time * (1 - NODES)[:, None])[1]
+    forced = time * (WEIGHTS * NODES ** np.arange(3)[:, None]) @ kicks
+    return np.concatenate([_free(stiffness, damping, time), forced])
 
 
 def _free(stiffness: Array, damping: Array, time: Any) -> Array:
-    """Exact motion of free oscillators over some time, rows [xx, xẋ, ẋx, ẋẋ]."""
     root = np.sqrt(stiffness - damping**2 / 4 + 0j)      # imaginary where overdamped
     falls = np.exp(-damping * time / 2)
     cosine, sine = falls * np.cos(root * time).real, falls * time * np.sinc(root * time / np.pi).real
     return np.stack([cosine + damping / 2 * sine, sine, -stiffness * sine, cosine - damping / 2 * sine])
-
-
-def _forced(stiffness: Array, damping: Array, time: float, polynomials: Array) -> Array:
-    """What forcings n = p(t/time) come to from rest, rows [x, ẋ] of each."""
-    kicks = _free(stiffness, damping, time * (1 - NODES)[:, None])[1::2]
-    return np.einsum("pi,cik->pck", time * polynomials, kicks).reshape(-1, len(stiffness))
 
 
 def _alone(people: Crowd) -> Array:

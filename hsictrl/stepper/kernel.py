@@ -52,15 +52,16 @@ class Bridge(NamedTuple):
 
     length: float         # [m]
     modes: Array          # (2, n_m): Ω² [1/s²] and Γ [1/s]
-    weights: Array        # (2, 24, n_m + n): `step_weights` for steps of h and 2h
+    motions: Array        # (3, 7, n_m + n): `motion` over h/2, h and 2h
 
 
 class Field(NamedTuple):
     """What acts at the nodes of a step."""
 
-    rows: Array    # (nodes, orders, n_m, n): participations and their rates [1/√kg, …]
-    load: Array    # (nodes, n_m): modal forces [N/√kg]
-    root: Array    # (nodes, n_m, n_m): Cholesky factor of M̄
+    rows: Array     # (nodes, orders, n_m, n): participations and their rates [1/√kg, …]
+    force: Array    # (nodes, n): walking forces [N]
+    load: Array     # (nodes, n_m): modal forces [N/√kg]
+    root: Array     # (nodes, n_m, n_m): Cholesky factor of M̄
 
 
 class Work(NamedTuple):
@@ -68,7 +69,7 @@ class Work(NamedTuple):
 
     y: Array               # (2, n_m + n): a stage
     n: Array               # (4, n_m + n): forcing at each stage
-    acceleration: Array    # (n_m)
+    acceleration: Array    # (2, n_m): z̈ at the beginning, and at later stages
     between: Array         # (n): place between two knots of a table
     knot: NDArray[np.int64]
 
@@ -83,26 +84,44 @@ def march(t, h, bridge, contacts, drive, fine, coarse, found, rough):  # type: i
     rough : (pairs + 1, 3, n_m), likewise, of the coarse road
     """
     orders, n_m, n = contacts.shapes.shape[1], drive.shape[1], contacts.used
-    field = Field(np.zeros((5, orders, n_m, n)), np.zeros((5, n_m)), np.zeros((5, n_m, n_m)))
-    kept = Field(np.zeros((3, orders, n_m, n)), np.zeros((3, n_m)), np.zeros((3, n_m, n_m)))
-    work = Work(np.zeros((2, n_m + n)), np.zeros((4, n_m + n)), np.zeros(n_m), np.zeros(n), np.zeros(n, np.int64))
-    force = np.zeros((5, n))
+    field, kept = _field(5, orders, n_m, n), _field(3, orders, n_m, n)
+    work = Work(np.zeros((2, n_m + n)), np.zeros((4, n_m + n)), np.zeros((2, n_m)), np.zeros(n), np.zeros(n, np.int64))
     events = _events(contacts.paths)
-    _shapes(t, 0, n, bridge.length, contacts, field.rows[4], work.between, work.knot)
-    _forces(t, contacts, force[4], work.between, work.knot)
-    _sum(field, 4, drive[0], contacts.bodies[3], force[4])
+    _shapes(t, 4, 0, n, bridge.length, contacts, field, work)
+    _forces(t, 4, contacts, field, work)
+    _sum(field, 4, drive, 0, contacts)
     for pair in range(len(rough) - 1):
-        start = t + 2 * h * pair
-        field.rows[0], field.load[0], field.root[0], force[0] = field.rows[4], field.load[4], field.root[4], force[4]
-        _fill(start, h, bridge.length, contacts, events, field, force, work)
+        start, now = t + 2 * h * pair, 4 * pair
+        _copy(field, 4, field, 0)
+        _fill(start, h, bridge.length, contacts, events, field, work)
         for i in range(1, 5):
-            _sum(field, i, drive[4 * pair + i], contacts.bodies[3], force[i])
-        share = drive[4 * pair:4 * pair + 5]
-        _go(start, h, 0, 1, bridge, contacts, events, share, field, kept, force, fine, work, found[2 * pair])
-        _go(start + h, h, 2, 1, bridge, contacts, events, share, field, kept, force, fine, work, found[2 * pair + 1])
-        _go(start, 2 * h, 0, 2, bridge, contacts, events, share, field, kept, force, coarse, work, rough[pair])
-    _record(field, 4, bridge, contacts, fine, work, found[-1])
-    _record(field, 4, bridge, contacts, coarse, work, rough[-1])
+            _sum(field, i, drive, now + i, contacts)
+        _go(start, h, 0, 1, bridge, contacts, events, drive, now, field, kept, fine, work, found, 2 * pair)
+        _go(start + h, h, 2, 1, bridge, contacts, events, drive, now, field, kept, fine, work, found, 2 * pair + 1)
+        _go(start, 2 * h, 0, 2, bridge, contacts, events, drive, now, field, kept, coarse, work, rough, pair)
+    _record(field, 4, bridge, contacts, fine, work, found, len(found) - 1)
+    _record(field, 4, bridge, contacts, coarse, work, rough, len(rough) - 1)
+
+
+@njit(**COMPILED)
+def _field(nodes, orders, n_m, n):  # type: ignore[no-untyped-def]
+    return Field(np.zeros((nodes, orders, n_m, n)), np.zeros((nodes, n)), np.zeros((nodes, n_m)),
+                 np.zeros((nodes, n_m, n_m)))
+
+
+@njit(**COMPILED)
+def _copy(source, i, target, j):  # type: ignore[no-untyped-def]
+    """Node i of a field becomes node j of another."""
+    _, orders, n_m, n = source.rows.shape
+    for k in range(n):
+        target.force[j, k] = source.force[i, k]
+    for p in range(n_m):
+        target.load[j, p] = source.load[i, p]
+        for q in range(n_m):
+            target.root[j, p, q] = source.root[i, p, q]
+        for order in range(orders):
+            for k in range(n):
+                target.rows[j, order, p, k] = source.rows[i, order, p, k]
 
 
 class Events(NamedTuple):
@@ -122,18 +141,18 @@ def _events(paths):  # type: ignore[no-untyped-def]
 
 @njit(**COMPILED)
 def _within(events, t, h):  # type: ignore[no-untyped-def]
-    """Slots that step on or off between t and t + h."""
-    return events.slots[np.searchsorted(events.times, t, side="right"):np.searchsorted(events.times, t + h)]
+    """Events between t and t + h."""
+    return range(np.searchsorted(events.times, t, side="right"), np.searchsorted(events.times, t + h))
 
 
 @njit(**COMPILED)
-def _fill(t, h, length, contacts, events, field, force, work):  # type: ignore[no-untyped-def]
+def _fill(t, h, length, contacts, events, field, work):  # type: ignore[no-untyped-def]
     """Participations and forces at nodes 1 to 4, half a step of h apart."""
     rows = field.rows
     for i in range(1, 5):
-        _forces(t + h / 2 * i, contacts, force[i], work.between, work.knot)
+        _forces(t + h / 2 * i, i, contacts, field, work)
     for i in (2, 4):
-        _shapes(t + h / 2 * i, 0, rows.shape[3], length, contacts, rows[i], work.between, work.knot)
+        _shapes(t + h / 2 * i, i, 0, rows.shape[3], length, contacts, field, work)
     # nobody goes far in half a step: a parabola through every second node loses 1e-10
     for order in range(rows.shape[1]):
         for j in range(rows.shape[2]):
@@ -141,42 +160,44 @@ def _fill(t, h, length, contacts, events, field, force, work):  # type: ignore[n
                 a, b, c = rows[0, order, j, k], rows[2, order, j, k], rows[4, order, j, k]
                 rows[1, order, j, k] = (3 * a + 6 * b - c) / 8
                 rows[3, order, j, k] = (3 * c + 6 * b - a) / 8
-    for k in _within(events, t, 2 * h):     # but for those who have just come, or gone
+    for event in _within(events, t, 2 * h):     # but for those who have just come, or gone
+        k = events.slots[event]
         for i in (1, 3):
-            _shapes(t + h / 2 * i, k, k + 1, length, contacts, rows[i], work.between, work.knot)
+            _shapes(t + h / 2 * i, i, k, k + 1, length, contacts, field, work)
 
 
 @njit(**COMPILED)
-def _shapes(t, first, last, length, contacts, rows, between, knot):  # type: ignore[no-untyped-def]
+def _shapes(t, node, first, last, length, contacts, field, work):  # type: ignore[no-untyped-def]
     """Participations of a range of slots at time t."""
-    paths, tables, points = contacts.paths, contacts.shapes.ravel(), contacts.shapes.shape[3]
+    rows, paths, points = field.rows, contacts.paths, contacts.shapes.shape[3]
+    _, orders, n_m, _ = rows.shape
+    tables = contacts.shapes.ravel()
     for k in range(first, last):
         place = min(max(paths[2, k] * (t - paths[0, k]) / length, 0.0), 1.0) * (points - 1)
         nearest = min(max(int(place), 1), points - 3)
-        between[k] = place - nearest
-        knot[k] = (nearest - 1) + k * (len(tables) // len(contacts.shapes))
-    for order in range(rows.shape[0]):
-        for j in range(rows.shape[1]):
+        work.between[k] = place - nearest
+        work.knot[k] = nearest - 1 + k * orders * n_m * points
+    for order in range(orders):
+        for j in range(n_m):
             for k in range(first, last):
-                i = np.uint64(knot[k] + (order * rows.shape[1] + j) * points)
-                on_deck = (t >= paths[0, k]) & (t <= paths[1, k])
-                value = _cubic(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], between[k])
-                rows[order, j, k] = value if on_deck else 0.0
+                i = np.uint64(work.knot[k] + (order * n_m + j) * points)
+                value = _cubic(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], work.between[k])
+                rows[node, order, j, k] = value if (t >= paths[0, k]) & (t <= paths[1, k]) else 0.0
 
 
 @njit(**COMPILED)
-def _forces(t, contacts, force, between, knot):  # type: ignore[no-untyped-def]
+def _forces(t, node, contacts, field, work):  # type: ignore[no-untyped-def]
     """Walking forces at time t, of those off the deck too."""
     periods, tables, points = contacts.periods, contacts.combs.ravel(), contacts.combs.shape[1]
-    for k in range(len(force)):
+    for k in range(field.force.shape[1]):
         cycle = t * periods[0, k]
         place = (cycle - np.floor(cycle)) * periods[1, k]
         nearest = int(place)
-        between[k] = place - nearest
-        knot[k] = nearest + k * points
-    for k in range(len(force)):
-        i = np.uint64(knot[k])
-        force[k] = _spline(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], between[k])
+        work.between[k] = place - nearest
+        work.knot[k] = nearest + k * points
+    for k in range(field.force.shape[1]):
+        i = np.uint64(work.knot[k])
+        field.force[node, k] = _spline(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], work.between[k])
 
 
 _spline = njit(**COMPILED)(spline)
@@ -197,43 +218,43 @@ def _shape(table, place):  # type: ignore[no-untyped-def]
 
 
 @njit(**COMPILED)
-def _sum(field, i, drive, unsprung, force):  # type: ignore[no-untyped-def]
+def _sum(field, i, drive, now, contacts):  # type: ignore[no-untyped-def]
     """Modal forces and the factored mass matrix of node i, from its participations."""
-    rows, root = field.rows[i, 0], field.root[i]
-    n_m, n = rows.shape
+    rows, root, unsprung = field.rows, field.root, contacts.bodies
+    _, _, n_m, n = rows.shape
     for p in range(n_m):
-        total = drive[p]
+        total = drive[now, p]
         for k in range(n):
-            total += rows[p, k] * force[k]
+            total += rows[i, 0, p, k] * field.force[i, k]
         field.load[i, p] = total
         for q in range(p + 1):
             total = 1.0 if p == q else 0.0
             for k in range(n):
-                total += rows[p, k] * unsprung[k] * rows[q, k]
+                total += rows[i, 0, p, k] * unsprung[3, k] * rows[i, 0, q, k]
             for r in range(q):
-                total -= root[p, r] * root[q, r]
-            root[p, q] = np.sqrt(total) if p == q else total / root[q, q]
+                total -= root[i, p, r] * root[i, q, r]
+            root[i, p, q] = np.sqrt(total) if p == q else total / root[i, q, q]
 
 
 @njit(**COMPILED)
-def _go(t, h, first, stride, bridge, contacts, events, drive, field, kept, force, x, work, record):  # type: ignore[no-untyped-def]
+def _go(t, h, first, stride, bridge, contacts, events, drive, now, field, kept,  # type: ignore[no-untyped-def]
+        x, work, found, at):
     """Record the state at t and take a step of h, over nodes first, first + stride and first + 2 stride."""
-    weights = bridge.weights[stride - 1]
     late = _within(events, t, h)
     if not len(late):
-        _keep(x, record)
-        _step(field, first, stride, weights, bridge.modes, contacts.bodies, x, work)
-        record[2] = work.acceleration
+        _keep(x, found, at)
+        _step(h, field, first, stride, stride, bridge, contacts, x, work)
+        for j in range(found.shape[2]):
+            found[at, 2, j] = work.acceleration[0, j]
         return
-    _record(field, first, bridge, contacts, x, work, record)
+    _record(field, first, bridge, contacts, x, work, found, at)
     for i in range(3):
-        kept.rows[i] = field.rows[first + i * stride]
-    for k in late:
-        _smooth(t, h, k, bridge.length, contacts, kept.rows)
+        _copy(field, first + i * stride, kept, i)
+    for event in late:
+        _smooth(t, h, events.slots[event], bridge.length, contacts, kept.rows)
     for i in range(3):
-        node = first + i * stride
-        _sum(kept, i, drive[node], contacts.bodies[3], force[node])
-    _step(kept, 0, 1, weights, bridge.modes, contacts.bodies, x, work)
+        _sum(kept, i, drive, now + first + i * stride, contacts)
+    _step(h, kept, 0, 1, stride, bridge, contacts, x, work)
 
 
 @njit(**COMPILED)
@@ -255,59 +276,68 @@ def _smooth(t, h, k, length, contacts, rows):  # type: ignore[no-untyped-def]
 
 
 @njit(**COMPILED)
-def _keep(x, record):  # type: ignore[no-untyped-def]
+def _keep(x, found, at):  # type: ignore[no-untyped-def]
     """Record displacements and velocities of the modes."""
-    for j in range(record.shape[1]):
-        record[0, j], record[1, j] = x[0, j], x[1, j]
+    for j in range(found.shape[2]):
+        found[at, 0, j], found[at, 1, j] = x[0, j], x[1, j]
 
 
 @njit(**COMPILED)
-def _record(field, i, bridge, contacts, x, work, record):  # type: ignore[no-untyped-def]
+def _record(field, i, bridge, contacts, x, work, found, at):  # type: ignore[no-untyped-def]
     """Record the state at node i, accelerations with it."""
-    _keep(x, record)
-    _force(field, i, bridge.modes, contacts.bodies, x, work.n[0], record[2])
+    _keep(x, found, at)
+    _force(field, i, bridge, contacts, x, work, 0)
+    for j in range(found.shape[2]):
+        found[at, 2, j] = work.acceleration[0, j]
 
 
 @njit(**COMPILED)
-def _step(field, first, stride, w, modes, bodies, x, work):  # type: ignore[no-untyped-def]
-    """One step, from the state x on. Leaves z̈ at its beginning in `work`.
+def _step(h, field, first, stride, road, bridge, contacts, x, work):  # type: ignore[no-untyped-def]
+    """One step, from the state x on, on the fine road (1) or the coarse one (2). Leaves z̈ at its beginning in `work`.
 
-    Rows of the weights w: 0 to 3 for free motion over half a step, 4 and 5 for the first forcing alone, 6 to 9 for
-    the first and the second; 10 to 13 for free motion over the step, 14 to 17 for the first and the third forcing,
-    18 to 23 for all, the two in the middle together.
+    Rows of motions, over half a step and a whole one: 0 to 3 free motion, 4 to 6 what forcings 1, τ and τ² come to,
+    τ = t over the length. Forced velocities follow by parts: row 1, row 4 and twice row 5, over the length.
     """
-    y, n, unused = work.y, work.n, np.empty(modes.shape[1])
-    _force(field, first, modes, bodies, x, n[0], work.acceleration)
+    y, n, half, whole = work.y, work.n, bridge.motions[road - 1], bridge.motions[road]
+    _force(field, first, bridge, contacts, x, work, 0)
     for k in range(y.shape[1]):
-        y[0, k] = w[0, k] * x[0, k] + w[1, k] * x[1, k] + w[4, k] * n[0, k]
-        y[1, k] = w[2, k] * x[0, k] + w[3, k] * x[1, k] + w[5, k] * n[0, k]
-    _force(field, first + stride, modes, bodies, y, n[1], unused)
-    for k in range(y.shape[1]):
-        y[0, k] = w[0, k] * x[0, k] + w[1, k] * x[1, k] + w[6, k] * n[0, k] + w[8, k] * n[1, k]
-        y[1, k] = w[2, k] * x[0, k] + w[3, k] * x[1, k] + w[7, k] * n[0, k] + w[9, k] * n[1, k]
-    _force(field, first + stride, modes, bodies, y, n[2], unused)
-    for k in range(y.shape[1]):
-        y[0, k] = w[10, k] * x[0, k] + w[11, k] * x[1, k] + w[14, k] * n[0, k] + w[16, k] * n[2, k]
-        y[1, k] = w[12, k] * x[0, k] + w[13, k] * x[1, k] + w[15, k] * n[0, k] + w[17, k] * n[2, k]
-    _force(field, first + 2 * stride, modes, bodies, y, n[3], unused)
-    for k in range(y.shape[1]):
-        middle = n[1, k] + n[2, k]
-        position = (w[10, k] * x[0, k] + w[11, k] * x[1, k]
-                    + w[18, k] * n[0, k] + w[20, k] * middle + w[22, k] * n[3, k])
-        x[1, k] = (w[12, k] * x[0, k] + w[13, k] * x[1, k]
-                   + w[19, k] * n[0, k] + w[21, k] * middle + w[23, k] * n[3, k])
-        x[0, k] = position
+        y[0, k] = half[0, k] * x[0, k] + half[1, k] * x[1, k] + half[4, k] * n[0, k]
+        y[1, k] = half[2, k] * x[0, k] + half[3, k] * x[1, k] + half[1, k] * n[0, k]
+    _force(field, first + stride, bridge, contacts, y, work, 1)
+    _lean(h / 2, half, x, n[0], n[1], y)
+    _force(field, first + stride, bridge, contacts, y, work, 2)
+    _lean(h, whole, x, n[0], n[2], y)
+    _force(field, first + 2 * stride, bridge, contacts, y, work, 3)
+    for k in range(y.shape[1]):     # n is n₀ + a τ + b τ², through both values in the middle
+        middle = 2 * (n[1, k] + n[2, k])
+        a, b = middle - 3 * n[0, k] - n[3, k], 2 * (n[0, k] + n[3, k]) - middle
+        position = whole[0, k] * x[0, k] + whole[1, k] * x[1, k]
+        velocity = whole[2, k] * x[0, k] + whole[3, k] * x[1, k]
+        x[0, k] = position + whole[4, k] * n[0, k] + whole[5, k] * a + whole[6, k] * b
+        x[1, k] = velocity + whole[1, k] * n[0, k] + whole[4, k] * (a / h) + whole[5, k] * (2 * b / h)
 
 
 @njit(**COMPILED)
-def _force(field, i, modes, bodies, x, n, acceleration):  # type: ignore[no-untyped-def]
+def _lean(time, over, x, first, middle, y):  # type: ignore[no-untyped-def]
+    """The next stage y: under a forcing that goes linearly from its first value through the one in the middle."""
+    for k in range(y.shape[1]):
+        slope = 2 * (middle[k] - first[k])
+        position = over[0, k] * x[0, k] + over[1, k] * x[1, k]
+        velocity = over[2, k] * x[0, k] + over[3, k] * x[1, k]
+        y[0, k] = position + over[4, k] * first[k] + over[5, k] * slope
+        y[1, k] = velocity + over[1, k] * first[k] + over[4, k] * (slope / time)
+
+
+@njit(**COMPILED)
+def _force(field, i, bridge, contacts, x, work, stage):  # type: ignore[no-untyped-def]
     """Modal accelerations at node i of a field, and the forcing n of modes and bodies that move alone otherwise."""
-    rows, n_m = field.rows[i], modes.shape[1]
-    stiffness, damping, sprung, unsprung = bodies[0], bodies[1], bodies[2], bodies[3]
+    rows, modes, bodies, n, found = field.rows[i], bridge.modes, contacts.bodies, work.n[stage], work.acceleration
+    n_m, at = modes.shape[1], min(stage, 1)
     pull, u, du = n[n_m:], x[0, n_m:], x[1, n_m:]
+    stiffness, damping, sprung, unsprung = bodies[0], bodies[1], bodies[2], bodies[3]
     pull[:] = 0.0
     for j in range(n_m):
-        z, dz, row = x[0, j], x[1, j], rows[0, j]
+        row, z, dz = rows[0, j], x[0, j], x[1, j]
         for k in range(len(pull)):
             pull[k] += row[k] * (stiffness[k] * z + damping[k] * dz)
     if len(rows) > 1:      # convective: the contact moves along the shape
@@ -315,27 +345,28 @@ def _force(field, i, modes, bodies, x, n, acceleration):  # type: ignore[no-unty
             for k in range(len(pull)):
                 pull[k] += damping[k] * rows[1, j, k] * x[0, j]
     for j in range(n_m):
-        total, row = field.load[i, j] - modes[0, j] * x[0, j] - modes[1, j] * x[1, j], rows[0, j]
+        row, total = rows[0, j], field.load[i, j] - modes[0, j] * x[0, j] - modes[1, j] * x[1, j]
         for k in range(len(pull)):
             total += row[k] * sprung[k] * (stiffness[k] * u[k] + damping[k] * du[k] - pull[k])
         if len(rows) > 1:
             for q in range(n_m):
                 for k in range(len(pull)):
                     total -= row[k] * unsprung[k] * (2 * rows[1, q, k] * x[1, q] + rows[2, q, k] * x[0, q])
-        acceleration[j] = total
-    _solve(field.root[i], acceleration)
+        found[at, j] = total
+    _solve(field.root, i, found, at)
     for j in range(n_m):
-        n[j] = acceleration[j] + modes[0, j] * x[0, j] + modes[1, j] * x[1, j]
+        n[j] = found[at, j] + modes[0, j] * x[0, j] + modes[1, j] * x[1, j]
 
 
 @njit(**COMPILED)
-def _solve(root, b):  # type: ignore[no-untyped-def]
-    """Solve in place with a Cholesky factor."""
-    for i in range(len(b)):
-        for q in range(i):
-            b[i] -= root[i, q] * b[q]
-        b[i] /= root[i, i]
-    for i in range(len(b) - 1, -1, -1):
-        for q in range(i + 1, len(b)):
-            b[i] -= root[q, i] * b[q]
-        b[i] /= root[i, i]
+def _solve(root, i, b, at):  # type: ignore[no-untyped-def]
+    """Solve for row `at` of b in place, with the Cholesky factor of node i."""
+    n_m = b.shape[1]
+    for p in range(n_m):
+        for q in range(p):
+            b[at, p] -= root[i, p, q] * b[at, q]
+        b[at, p] /= root[i, p, p]
+    for p in range(n_m - 1, -1, -1):
+        for q in range(p + 1, n_m):
+            b[at, p] -= root[i, q, p] * b[at, q]
+        b[at, p] /= root[i, p, p]
