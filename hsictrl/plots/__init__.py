@@ -6,6 +6,7 @@ right, and leave the place at the left to a title: ``ax.set_title("...", loc="le
 in pyplot: close them with ``matplotlib.pyplot.close(plot.figure)``.
 """
 
+from hsictrl.plots.bars import bars_plot
 from hsictrl.plots.composed import assessment_figure
 from hsictrl.plots.convergence import convergence_plot
 from hsictrl.plots.effective_map import effective_map_plot, effective_panels
@@ -15,6 +16,6 @@ from hsictrl.plots.history import response_plot
 from hsictrl.plots.schematic import contact_force_plot, models_plot
 
 __all__ = [
-    "assessment_figure", "contact_force_plot", "convergence_plot", "effective_map_plot", "effective_panels",
-    "file_endings", "frf_plot", "models_plot", "normalised_frf_plot", "response_plot", "save",
+    "assessment_figure", "bars_plot", "contact_force_plot", "convergence_plot", "effective_map_plot",
+    "effective_panels", "file_endings", "frf_plot", "models_plot", "normalised_frf_plot", "response_plot", "save",
 ]
