@@ -2,6 +2,7 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
+STUDIES := fig4 table2 readings load_cycles fig8
 
 .PHONY: demo test bench docs paper clean
 
@@ -22,7 +23,9 @@ docs: .venv/.tools     ## the documentation, into docs/_build/html
 	$(BIN)/sphinx-build -q -W docs docs/_build/html
 
 paper: .venv/.tools    ## run the studies of the paper anew and replace their committed results
-	$(BIN)/hsictrl paper fig4 --recompute --processes 2 --output hsictrl/paper/results
+	for study in $(STUDIES); do \
+		$(BIN)/hsictrl paper $$study --recompute --processes 2 --output hsictrl/paper/results || exit 1; \
+	done
 
 .venv/.core: pyproject.toml
 	$(PYTHON) -m venv .venv

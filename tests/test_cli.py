@@ -395,6 +395,16 @@ def test_paper_claims_prints_and_writes_nothing(stand_in, tmp_path):
     assert (json.loads(result.stdout), result.stderr, list(tmp_path.iterdir())) == (stand_in, "", [])
 
 
+def test_paper_writes_the_numbers_of_a_study_without_a_figure(monkeypatch, tmp_path):
+    rows = [{"case": "a", "f_hz": 1.5}]
+    monkeypatch.setattr(paper, "compute", lambda name, recompute, executor: paper.Report(
+        name=name, rows=rows, columns=["case"], caption="", study=True))
+    result = run("paper", "table2", "--output", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["table2.json"]
+    assert json.loads((tmp_path / "table2.json").read_text()) == rows
+    assert result.stderr == f"wrote {tmp_path / 'table2.json'}\n"
+
+
 @pytest.mark.usefixtures("stand_in")
 def test_paper_recomputes_in_processes():
     assert re.search(r"recompute True, executor <concurrent.futures.process.ProcessPoolExecutor",
@@ -454,7 +464,8 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("simulate --animate TMP/no/a.gif", "the output folder must exist, got TMP/no; make it first"),
     ("simulate --figure TMP/a.gif --animate TMP/a.gif",
      "figure and animation must be two files, got TMP/a.gif for both; rename one"),
-    ("paper fig99", "name must be one of 'table1', 'fig1', 'fig2', 'fig3', 'fig4', 'claims', got 'fig99'; choose"),
+    ("paper fig99", "name must be one of 'table1', 'table2', 'readings', 'load_cycles', 'fig1', 'fig2', 'fig3', "
+                    "'fig4', 'fig8', 'claims', got 'fig99'; choose"),
     ("paper fig3 --output TMP/no", "the output folder must exist, got TMP/no; make it first"),
     ("paper fig3 --processes 0", "processes must be at least 1, got 0"),
 ])

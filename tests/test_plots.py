@@ -22,6 +22,7 @@ from PIL import Image
 import hsictrl as hsi
 from hsictrl.plots import (
     assessment_figure,
+    bars_plot,
     contact_force_plot,
     convergence_plot,
     crossing_animation,
@@ -699,3 +700,53 @@ def test_animation_refusals(tmp_path: Path) -> None:
     assert plt.get_fignums() == []
     with pytest.raises(TypeError, match="figure of ax must be of type Figure, got SubFigure; make it"):
         crossing_animation(CROWD, MOVED, ax=plt.figure().subfigures().subplots(2))
+# bars
+
+BARS = {"sparse": {"MF": [2.0, 1.9, 2.2], "PMC": [1.0, 0.9, 1.1]},
+        "dense": {"MF": [8.0, 7.0, 9.5], "PMC": [1.5, 1.2, 1.6]}}
+
+
+def test_bars_are_as_high_as_estimates_and_their_intervals_as_long() -> None:
+    plot = bars_plot({"2 Hz": BARS, "5 Hz": BARS}, columns=2)
+    for ax, lines in zip(plot.axes.flat, plot.lines.flat, strict=True):
+        assert [patch.get_height() for patch in ax.patches] == [2.0, 8.0, 1.0, 1.5]
+        for i, (name, line) in enumerate(zip(("MF", "PMC"), lines, strict=True)):
+            x, y = line.get_xdata().reshape(2, 3), line.get_ydata().reshape(2, 3)
+            np.testing.assert_array_equal(y[:, :2], [BARS[group][name][1:] for group in BARS])
+            assert np.all(np.isnan(y[:, 2]))
+            centres = [patch.get_x() + patch.get_width() / 2 for patch in ax.patches[2 * i:2 * i + 2]]
+            assert x[:, 0] == pytest.approx(centres)
+    assert plot.axes[0, 0].get_ylabel() == "Peak acceleration [m/s²]"
+    assert [tick.get_text() for tick in plot.axes[0, 0].get_xticklabels()] == ["sparse", "dense"]
+
+
+def test_bars_of_a_group_touch_but_do_not_overlap() -> None:
+    first, _, second, _ = bars_plot({"2 Hz": BARS}).axes[0, 0].patches
+    assert first.get_x() + first.get_width() == pytest.approx(second.get_x())
+    assert (to_hex(first.get_facecolor()), to_hex(second.get_facecolor())) == ("#595959", "#ffffff")
+
+
+def test_bars_have_one_legend_that_covers_no_panel() -> None:
+    plot = bars_plot({"2 Hz": BARS, "5 Hz": BARS, "a": BARS, "b": BARS}, columns=2)
+    plot.figure.canvas.draw()
+    assert entries(plot) == ["MF", "PMC", "95 % interval"]
+    box = plot.legend[0, 0].get_window_extent()
+    assert not any(box.overlaps(ax.get_tightbbox()) for ax in plot.axes.flat)
+    assert [ax.get_title("left") for ax in plot.axes.flat] == ["(a) 2 Hz", "(b) 5 Hz", "(c) a", "(d) b"]
+
+
+def test_bars_on_given_axes_make_no_figure() -> None:
+    figure, axes = plt.subplots(1, 2)
+    assert bars_plot({"2 Hz": BARS, "5 Hz": BARS}, columns=2, ax=axes).figure is figure
+    assert plt.get_fignums() == [figure.number]
+
+
+def test_bars_that_do_not_fit_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"panels must fill their rows, got 3 in 2 columns; give a divisor of 3"):
+        bars_plot({"a": BARS, "b": BARS, "c": BARS}, columns=2)
+    with pytest.raises(ValueError, match=r"every group must hold the same bars, got .*; give at least one group"):
+        bars_plot({"a": {**BARS, "odd": {"MF": [1.0, 0.9, 1.1]}}})
+    with pytest.raises(ValueError, match=r"every group must hold the same bars, got \[\]"):
+        bars_plot({})
+    with pytest.raises(ValueError, match=r"panels\['a'\]\['one'\]\['MF'\] must hold 3 numbers, got 2; give estimate"):
+        bars_plot({"a": {"one": {"MF": [1.0, 0.9]}}})

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 
 def paper(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="table1, fig1, fig2, fig3, fig4 or claims.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="table1, table2, readings, load_cycles, fig1, fig2, fig3, "
+                                                             "fig4, fig8 or claims.")],
     recompute: Annotated[bool, typer.Option("--recompute", help="Compute anew, not from committed results.")] = False,
     processes: options.Processes = 1,
     output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where the figure and its numbers go.")] = Path(),
@@ -32,7 +33,8 @@ def paper(
 ) -> None:
     """Tables, figures and claims of Van Nimmen et al. (2017).
 
-    A figure is written as NAME.png and its numbers as NAME.json; these, tables and claims are printed.
+    A figure is written as NAME.png; its numbers, or those of a study, as NAME.json. All numbers and claims are printed.
+    "readings" compares what the paper leaves open with its table 2; "load_cycles" is SF over MF on longer spans.
 
     Exit code: 0 when it worked, 1 when a trial failed, 2 for bad input, 130 when interrupted.
     """
@@ -52,15 +54,15 @@ def paper(
 
 
 def _write(report: Report, folder: Path) -> None:
-    """Write a figure and its numbers, if there is a figure."""
-    if report.draw is None:
-        return
-    from hsictrl.plots import save
+    """Write a figure, if there is one, and the numbers of a figure or study."""
+    if report.draw is not None:
+        from hsictrl.plots import save
 
-    with whole_file(folder / f"{report.name}.png") as draft:
-        save(report.draw(), draft)
-    with whole_file(folder / f"{report.name}.json") as draft:
-        draft.write_text(json.dumps(report.rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        with whole_file(folder / f"{report.name}.png") as draft:
+            save(report.draw(), draft)
+    if report.draw is not None or report.study:
+        with whole_file(folder / f"{report.name}.json") as draft:
+            draft.write_text(json.dumps(report.rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def _table(report: Report) -> Table:

@@ -16,7 +16,7 @@ from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.coupling import CondensedCrowd
 from hsictrl.crowd import CrowdFlow
 from hsictrl.paper.fig3 import persons_of
-from hsictrl.paper.reports import Report, Rows, committed
+from hsictrl.paper.reports import Report, Rows, committed, rounded
 from hsictrl.resonance import effective_map
 from hsictrl.study import Ensemble, StopRule, checkpoints, monte_carlo
 
@@ -104,7 +104,7 @@ def _settled_at(samples: Array, rule: StopRule) -> int:
 
 def _statistics(name: str, ensemble: Ensemble, index: int) -> dict[str, float]:
     parts = {"": ensemble.estimate, "_low": ensemble.interval[0], "_high": ensemble.interval[1]}
-    return {f"{name}_{statistic}{end}": float(f"{np.asarray(values)[index, k]:.6g}")
+    return {f"{name}_{statistic}{end}": rounded(np.asarray(values)[index, k])
             for k, statistic in enumerate(STATISTICS) for end, values in parts.items()}
 
 

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 
 from hsictrl import _checks as check
-from hsictrl.paper import claims, fig1, fig2, fig3, fig4, table1
+from hsictrl.paper import claims, fig1, fig2, fig3, fig4, fig8, load_cycles, readings, table1, table2
 from hsictrl.paper.reports import Report
 
 RECIPES: dict[str, Callable[[bool, Executor | None], Report]] = {
-    "table1": table1.report, "fig1": fig1.report, "fig2": fig2.report, "fig3": fig3.report, "fig4": fig4.report,
+    "table1": table1.report, "table2": table2.report, "readings": readings.report, "load_cycles": load_cycles.report,
+    "fig1": fig1.report, "fig2": fig2.report, "fig3": fig3.report, "fig4": fig4.report, "fig8": fig8.report,
     "claims": claims.report}
 
 
@@ -24,7 +25,7 @@ def names() -> tuple[str, ...]:
     Examples
     --------
     >>> names()
-    ('table1', 'fig1', 'fig2', 'fig3', 'fig4', 'claims')
+    ('table1', 'table2', 'readings', 'load_cycles', 'fig1', 'fig2', 'fig3', 'fig4', 'fig8', 'claims')
     """
     return tuple(RECIPES)
 

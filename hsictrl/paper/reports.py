@@ -32,6 +32,8 @@ class Report:
         What the numbers are, and under which assumptions.
     draw : callable, optional
         Draws the figure and returns a `control.ControlPlot`.
+    study : bool
+        Whether the numbers come from a study; they are worth a file even where there is no figure.
 
     Examples
     --------
@@ -45,6 +47,27 @@ class Report:
     columns: list[str]
     caption: str
     draw: Callable[[], ct.ControlPlot] | None = None
+    study: bool = False
+
+
+def rounded(value: float) -> float:
+    """Six digits, which is more than any study settles.
+
+    Parameters
+    ----------
+    value : float
+        A number of a row [any unit].
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> rounded(1.23456789)
+    1.23457
+    """
+    return float(f"{value:.6g}")
 
 
 def committed(name: str) -> Rows:

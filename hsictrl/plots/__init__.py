@@ -7,6 +7,7 @@ in pyplot: close them with ``matplotlib.pyplot.close(plot.figure)``.
 """
 
 from hsictrl.plots.animation import crossing_animation
+from hsictrl.plots.bars import bars_plot
 from hsictrl.plots.composed import assessment_figure, simulation_figure
 from hsictrl.plots.convergence import convergence_plot
 from hsictrl.plots.effective_map import effective_map_plot, effective_panels
@@ -17,7 +18,8 @@ from hsictrl.plots.schematic import contact_force_plot, models_plot
 from hsictrl.plots.spectrum import spectrum_plot
 
 __all__ = [
-    "animation_endings", "assessment_figure", "contact_force_plot", "convergence_plot", "crossing_animation",
-    "effective_map_plot", "effective_panels", "file_endings", "frf_plot", "models_plot", "normalised_frf_plot",
-    "persons_plot", "response_plot", "save", "save_animation", "simulation_figure", "spectrum_plot",
+    "animation_endings", "assessment_figure", "bars_plot", "contact_force_plot", "convergence_plot",
+    "crossing_animation", "effective_map_plot", "effective_panels", "file_endings", "frf_plot", "models_plot",
+    "normalised_frf_plot", "persons_plot", "response_plot", "save", "save_animation", "simulation_figure",
+    "spectrum_plot",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from string import ascii_lowercase
-from typing import Any
+from typing import Any, Literal
 
 import control as ct
 import matplotlib.pyplot as plt
@@ -59,10 +59,11 @@ def one_axes(ax: Axes | None) -> Axes:
 
 def several_axes(
     ax: Sequence[Axes] | np.ndarray | None, rows: int, figsize: tuple[float, float], columns: int = 1,
+    sharey: Literal["row"] | bool = "row",
 ) -> np.ndarray:
     """The axes given, or those of a new figure, shape (rows, columns)."""
     if ax is None:
-        ax = plt.subplots(rows, columns, figsize=figsize, sharey="row", layout="constrained")[1]
+        ax = plt.subplots(rows, columns, figsize=figsize, sharey=sharey, layout="constrained")[1]
     axes = [one_axes(one) for one in np.ravel(np.asarray(ax, dtype=object))]
     if len(axes) != rows * columns:
         raise ValueError(f"ax must hold {rows * columns} axes, got {len(axes)}; "
