@@ -12,6 +12,7 @@ import time
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import control as ct
 import numpy as np
@@ -148,7 +149,7 @@ def stepping() -> list[Row]:
     error = float(np.max(np.abs(found.response.outputs - exact)) / np.max(np.abs(exact)))
     host, missed = as_good(bare_system(crowd), times, exact)
     whole, synthesis = best(lambda: hsi.simulate(crowd), 15), best(lambda: tables_of(crowd), 15)
-    few, many = (best(lambda one=stream(n): hsi.simulate(one), 15) for n in (50, 400))
+    few, many = (best(partial(hsi.simulate, stream(n)), 15) for n in (50, 400))
     return [Row(f"simulate, {WALKERS} walkers, 50 s, error {error:.0e}, without synthesis", whole - synthesis,
                 f"ct.input_output_response, {missed:.0e}", host, "≥ 100×, ≤ 40 ms"),
             Row("the same, with the synthesis of narrow-band forces", whole, "-", None, "≤ 60 ms"),
@@ -199,7 +200,7 @@ def bare_system(crowd: hsi.MovingCrowd) -> ct.NonlinearIOSystem:
 
 
 def memory() -> str:
-    """Largest memory of a simulation, if as many walkers, or ten times as many, have come and gone before its window."""
+    """Largest memory of a simulation before whose window as many, or ten times as many, have come and gone."""
     peaks = []
     for crossings in (1, 10):
         arrivals = np.linspace(-40.0 * crossings, 40.0, WALKERS * (crossings + 1))
