@@ -287,6 +287,7 @@ QUICK = hsi.moving_crowd(beam(), hsi.Traffic(
     [hsi.Walker(force=hsi.HarmonicForce([0.4]), step_frequency=2.0, speed=9.0)], window=(0.0, 10.0)))
 LATE = hsi.moving_crowd(beam(), hsi.Traffic(
     [hsi.Walker(force=hsi.HarmonicForce([0.4]), step_frequency=2.0, speed=1.3, arrival=11.0)], window=(0.0, 10.0)))
+HEAVY = hsi.moving_crowd(beam(mass=5e3), standing([hsi.Pedestrian(mass=5000.0, frequency=8.0)], np.array([25.0])))
 TIMES = np.linspace(0.0, 10.0, 101)
 
 
@@ -307,6 +308,8 @@ TIMES = np.linspace(0.0, 10.0, 101)
      r"initial_state must hold z and dz of 2 mode\(s\), got shape \(2,\); give 4 numbers, or 0 for rest"),
     (CROWD, {"sense_at": [60.0]}, ValueError, r"sense_at must lie on the deck"),
     (LATE, {}, ValueError, r"somebody must arrive before the window ends at 10 s, got a first arrival at 11 s"),
+    (HEAVY, {"timepts": TIMES, "initial_state": [1.0, 0.0], "step": 0.05}, ValueError,
+     r"the step must be short enough for what people do to the bridge, got 0.05 s and an estimated error of .*% of"),
     (hsi.moving_crowd(beam(), standing([hsi.Pedestrian()], np.array([25.0]))), {}, ValueError,
      r"traffic must begin at most 1e\+07 double steps before timepts, got an arrival 2.5e\+10 s before; leave"),
 ])

@@ -117,12 +117,21 @@ def simulate(
     if forces is None and initial_state is None:
         _refuse_silence(crowd, clock)
     sense = crowd.bridge.participation(points.sense_at)
+    found = _run(crowd, clock, drive, initial, sense)
     for _ in range(HALVINGS if step is None else 0):
-        found = _run(crowd, clock, drive, initial, sense)
         if found.error <= TOLERANCE:
-            return found
+            break
         clock = replace(clock, substeps=2 * clock.substeps)
-    return _run(crowd, clock, drive, initial, sense)
+        found = _run(crowd, clock, drive, initial, sense)
+    return _settled(found)
+
+
+def _settled(found: Simulation) -> Simulation:
+    """Refuse a response whose error is as large as itself."""
+    if found.error >= 1:
+        raise ValueError(f"the step must be short enough for what people do to the bridge, got {found.step:.3g} s and "
+                         f"an estimated error of {found.error:.0%} of the peak; give a shorter step, or lighter people")
+    return found
 
 
 def _run(crowd: MovingCrowd, clock: Clock, drive: Array, initial: Array, sense: Array) -> Simulation:
@@ -131,15 +140,20 @@ def _run(crowd: MovingCrowd, clock: Clock, drive: Array, initial: Array, sense: 
     fine, coarse = march(crowd, clock, drive, initial)
     ours, rough = sense @ fine[:, 2].T, sense @ coarse[:, 2].T
     read = slice(None, clock.substeps * (len(clock.times) - 1) + 1, clock.substeps)
-    peak = float(np.max(np.abs(ours)))
-    error = float(np.max(np.abs(ours[:, ::2] - rough)))
-    states = fine[read, :2].reshape(len(clock.times), -1).T
-    n_m = crowd.bridge.n_modes
+    states, n_m = fine[read, :2].reshape(len(clock.times), -1).T, crowd.bridge.n_modes
     response = ct.TimeResponseData(
         clock.times, ours[:, read], states, output_labels=labels("a", len(sense)), issiso=len(sense) == 1,
         state_labels=labels("z", n_m) + labels("dz", n_m), plot_inputs=False, sysname="moving",
         title="moving: acceleration")
-    return Simulation(response=response, step=clock.step, error=error / SPREAD / peak if peak else 0.0)
+    return Simulation(response=response, step=clock.step, error=_error(ours, rough))
+
+
+def _error(fine: Array, coarse: Array) -> float:
+    """Estimate from accelerations by steps of h and of 2h, relative to their peak; infinite where they overflow."""
+    if not (np.all(np.isfinite(fine)) and np.all(np.isfinite(coarse))):
+        return np.inf
+    peak = float(np.max(np.abs(fine)))
+    return float(np.max(np.abs(fine[:, ::2] - coarse))) / SPREAD / peak if peak else 0.0
 
 
 def _default_step(crowd: MovingCrowd) -> float:
