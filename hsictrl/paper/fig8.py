@@ -14,11 +14,11 @@ import numpy as np
 from hsictrl._checks import Array
 from hsictrl.crowd import Traffic
 from hsictrl.paper.cells import CELLS, DEFAULT, DENSITIES, FREQUENCIES, SPREADS, Cell
-from hsictrl.paper.intervals import RULE, Interval, percentile, ratio
+from hsictrl.paper.intervals import Interval, percentile, ratio
 from hsictrl.paper.reports import Report, Rows, committed
 from hsictrl.paper.table2 import cell_of
 from hsictrl.prediction import predict_tuned
-from hsictrl.study import Ensemble, monte_carlo
+from hsictrl.study import Ensemble, PercentileRule, monte_carlo
 from hsictrl.walking import WalkingForce, YoungForce, ZivanovicForce
 
 FORCES: dict[str, WalkingForce] = {
@@ -28,6 +28,7 @@ CONDITIONS = [(model, force) for model in MODELS for force in FORCES]
 DRAWN = {"without interaction (MF)": ("MF", "narrow band"), "MF, Young's force": ("MF", "Young"),
          "with interaction (PMC)": ("PMC", "narrow band"), "PMC, Young's force": ("PMC", "Young")}
 SEED, MAX_TRIALS = 8, 3000
+RULE = PercentileRule(tolerance=0.1)      # the ratios, which are paired, settle sooner
 COLUMNS = ["density_per_m2", "case", "f_b_hz", "model", "force", "a95_m_per_s2", "a95_low_m_per_s2",
            "a95_high_m_per_s2", "ratio", "ratio_low", "ratio_high", "trials", "settled"]
 
