@@ -17,9 +17,9 @@ def walker(**given: float) -> hsi.Walker:
     return hsi.Walker(**own | given)
 
 
-TRAFFIC = hsi.Traffic([walker(), walker(arrival=3.3, body=hsi.Pedestrian(mass=300.0), offset=0.5),
-                       walker(arrival=8.9, speed=1.6)])
-TIMES = np.linspace(0.0, 60.0, 3001)
+TRAFFIC = hsi.Traffic([walker(speed=2.5), walker(arrival=3.3, speed=2.5, body=hsi.Pedestrian(mass=300.0), offset=0.5),
+                       walker(arrival=8.9, speed=3.2)])
+TIMES = np.linspace(0.0, 30.0, 1501)
 
 
 def solved(system: ct.NonlinearIOSystem, times: np.ndarray = TIMES) -> np.ndarray:
@@ -95,7 +95,7 @@ def test_light_bodies_leave_the_moving_forces() -> None:
 def test_the_system_of_an_instant_is_the_occupied_bridge() -> None:
     system = hsi.moving_crowd(BRIDGE, TRAFFIC).at(10.0)
     people = hsi.Crowd.of([hsi.Pedestrian(), hsi.Pedestrian(mass=300.0), hsi.Pedestrian()])
-    places = [(12.5, 0.0), (1.25 * 6.7, 0.5), (1.6 * 1.1, 0.0)]
+    places = [(25.0, 0.0), (2.5 * 6.7, 0.5), (3.2 * 1.1, 0.0)]
     np.testing.assert_allclose(system.A, hsi.couple(BRIDGE, people, places).A, rtol=1e-12, atol=1e-12)
 
 
