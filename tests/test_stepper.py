@@ -153,13 +153,13 @@ def integrated(crowd: hsi.MovingCrowd, times: np.ndarray, **points: list[float])
 
 
 def mixed() -> hsi.Traffic:
-    """Quick walkers of several kinds, more of them than are ever on the deck together."""
+    """Quick walkers of several kinds, more of them than are ever on the deck together, whose bodies swing for long."""
     rng = np.random.default_rng(7)
     forces = [hsi.HarmonicForce([0.4, 0.1]), hsi.YoungForce(), hsi.ZivanovicForce(spacing=0.05, scaling="variance")]
     return hsi.Traffic([hsi.Walker(
-        body=hsi.Pedestrian(mass=60.0 + 10 * k, frequency=3.0 + 0.1 * k, damping=0.2, sprung_ratio=0.9),
-        force=forces[k % 3], speed=7.0 + 0.5 * (k % 4), step_frequency=1.8 + 0.04 * k, arrival=0.311 + 0.67 * k,
-        offset=0.2 * (k % 5)) for k in range(10)], window=(0.0, 14.0), rng=rng)
+        body=hsi.Pedestrian(mass=60.0 + 10 * k, frequency=3.0 + 0.1 * k, damping=0.005, sprung_ratio=0.9),
+        force=forces[k % 3], speed=8.0 + 0.5 * (k % 4), step_frequency=1.8 + 0.04 * k, arrival=0.311 + 0.67 * k,
+        offset=0.2 * (k % 5)) for k in range(16)], window=(0.0, 14.0), rng=rng)
 
 
 @pytest.mark.parametrize("convective", [False, True])
@@ -199,6 +199,16 @@ def test_without_walkers_it_is_the_empty_bridge() -> None:
     empty = ct.forced_response(hsi.couple(crowd.bridge), times, record)
     assert error(found, empty.outputs) <= 1e-6
     assert np.all(hsi.simulate(crowd, times).response.outputs == 0)
+
+
+def test_further_forces_begin_with_the_times_though_people_came_before() -> None:
+    early = hsi.Traffic([hsi.Walker(body=hsi.Pedestrian(mass=1e-9), force=hsi.HarmonicForce([0.4]), speed=1.3,
+                                    step_frequency=2.0, arrival=-5.3)], window=(0.0, 10.0))
+    crowd, times = hsi.moving_crowd(beam(), early), np.linspace(0.0, 10.0, 1001)
+    record = 200 * np.cos(10 * times)
+    both, walkers = (hsi.simulate(crowd, times, forces).response.outputs for forces in (record, None))
+    empty = ct.forced_response(hsi.couple(crowd.bridge), times, record).outputs
+    assert np.max(np.abs(both - walkers - empty)) <= 1e-5 * np.max(np.abs(empty))
 
 
 def test_bodies_without_mass_leave_the_moving_force_model() -> None:

@@ -71,9 +71,7 @@ class Deck:
 
     def enter(self, block: int) -> None:
         """Let those go who have left, and seat those who come during a block, at rest."""
-        gone = self._seat[(self._last == block - 1) & (self._seat >= 0)]
-        self._free[gone] = True
-        self.contacts.paths[:2, gone] = np.inf
+        self._free[self._seat[(self._last == block - 1) & (self._seat >= 0)]] = True
         new = np.flatnonzero((self._first == block) & (self._last >= block))
         self._seat[new] = seats = np.flatnonzero(self._free)[:len(new)]
         self._free[seats] = False
