@@ -191,6 +191,53 @@ def test_lateral_bodies_push_back_laterally_and_walk_vertically() -> None:
     assert ours.response.states == pytest.approx(host.states[[0, 1, 5, 6]], abs=1e-7)
 
 
+def test_a_lateral_body_takes_no_force_over_with_its_seat() -> None:
+    """No force acts laterally, so a lateral mode at rest stays there exactly, whoever comes and goes."""
+    swaying = hsi.Mode(frequency=1.0, damping=0.01, modal_mass=20e3, shape=hsi.SineShape(50.0, 1, "lateral"))
+    upright = hsi.Mode(frequency=2.0, damping=0.01, modal_mass=20e3, shape=hsi.SineShape(50.0))
+    bridge = hsi.Footbridge(length=50.0, width=3.0, mass=40e3, modes=(upright, swaying))
+    rng = np.random.default_rng(1)
+    crowd = hsi.moving_crowd(bridge, hsi.Traffic([hsi.Walker(
+        body=hsi.Pedestrian(frequency=0.75, direction="lateral" if lateral else "vertical"), speed=5.0,
+        force=hsi.HarmonicForce([0.4]), step_frequency=2.0, arrival=float(arrival))
+        for arrival, lateral in zip(rng.uniform(0, 40, 60), rng.random(60) < 0.7, strict=True)]))
+    found = hsi.simulate(crowd).response.states
+    assert np.max(np.abs(found[0])) > 0.1
+    assert not np.any(found[1])
+
+
+class Cantilever(hsi.Shape):
+    """Largest where walkers step on, and not zero where they leave."""
+
+    length, antinode, mean_square, mean_absolute = 50.0, (0.0, 0.0), 0.4, 0.6
+
+    def __call__(self, x, y=0.0, direction="vertical"):
+        x, y = np.broadcast_arrays(x, y)
+        return np.where((x >= 0) & (x <= 50.0), np.cos(0.7 * np.pi * x / 50.0), 0.0)
+
+
+@pytest.mark.parametrize("arrival", [3.0, 3.003])     # on a step, and between two
+def test_a_jump_of_the_shape_is_met_wherever_it_comes(arrival: float) -> None:
+    mode = hsi.Mode(frequency=2.0, damping=0.005, modal_mass=20e3, shape=Cantilever())
+    bridge = hsi.Footbridge(length=50.0, width=3.0, mass=40e3, modes=(mode,))
+    crowd = hsi.moving_crowd(bridge, hsi.Traffic([hsi.Walker(
+        force=hsi.HarmonicForce([0.4]), step_frequency=2.0, speed=10.0, arrival=arrival)], window=(0.0, 10.0)))
+    times = np.linspace(0.0, 10.0, 801)
+    edges, state, host = [0.0, arrival, arrival + 5.0, 10.0], np.zeros(4), np.zeros(801)
+    system = crowd.to_nlsys()
+    for start, stop in pairwise(edges):
+        def rates(t: float, x: np.ndarray, low: float = start + 1e-12, high: float = stop - 1e-12) -> np.ndarray:
+            return system._rhs(min(max(t, low), high), x, np.zeros(1))
+
+        path = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=1e-10, atol=1e-14, dense_output=True)
+        asked = np.flatnonzero((times > start + 1e-9) & (times < stop - 1e-9))
+        host[asked] = [path.sol(t)[0] for t in times[asked]]
+        state = path.y[:, -1]
+    z = hsi.simulate(crowd, times).response.states[0]
+    between = host != 0
+    assert np.max(np.abs(z[between] - host[between])) <= 1e-4 * np.max(np.abs(host))
+
+
 def test_without_walkers_it_is_the_empty_bridge() -> None:
     nobody = walking(1, 2.0, 1.3, 10.0, 1).since(100.0)
     times, record = np.linspace(0.0, 10.0, 1001), np.cos(np.arange(1001))
@@ -317,6 +364,9 @@ TIMES = np.linspace(0.0, 10.0, 101)
     (CROWD, {"timepts": TIMES, "initial_state": [1.0, 0.0]}, ValueError,
      r"initial_state must hold z and dz of 2 mode\(s\), got shape \(2,\); give 4 numbers, or 0 for rest"),
     (CROWD, {"sense_at": [60.0]}, ValueError, r"sense_at must lie on the deck"),
+    (hsi.moving_crowd(beam(), hsi.Traffic([hsi.Walker(
+        force=hsi.HarmonicForce([0.4]), step_frequency=2.0, speed=1e-7)])), {}, ValueError,
+     r"the window must hold at most 1e\+07 steps of 0.0125 s, got 5e\+08 s; give the traffic a window, or timepts"),
     (LATE, {}, ValueError, r"somebody must arrive before the window ends at 10 s, got a first arrival at 11 s"),
     (HEAVY, {"timepts": TIMES, "initial_state": [1.0, 0.0], "step": 0.05}, ValueError,
      r"the step must be short enough for what people do to the bridge, got 0.05 s and an estimated error of .*% of"),

@@ -83,7 +83,7 @@ class Shape(ABC):
         >>> SineShape(np.pi).derivative([0.0, np.pi / 2, np.pi]).round(12)
         array([ 1.,  0., -1.])
         """
-        if check.whole("order", order, least=0, remedy="give 1 or 2") == 0:
+        if check.whole("order", order, least=0, remedy="give 0, 1 or 2") == 0:
             return self(x, y, direction)
         raise ValueError(f"convective terms need the derivatives of every shape, got none of {type(self).__name__}; "
                          "give it a method derivative(x, y, direction, order), or leave convective terms out")
@@ -142,7 +142,7 @@ class SineShape(Shape):
         return _evaluated(self, x, y, direction)
 
     def derivative(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical", order: int = 1) -> Array:
-        return _evaluated(self, x, y, direction, check.whole("order", order, least=0, remedy="give 1 or 2"))
+        return _evaluated(self, x, y, direction, check.whole("order", order, least=0, remedy="give 0, 1 or 2"))
 
     @property
     def antinode(self) -> tuple[float, float]:
@@ -230,7 +230,7 @@ class BeamShape(Shape):
         return _evaluated(self, x, y, direction)
 
     def derivative(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical", order: int = 1) -> Array:
-        return _evaluated(self, x, y, direction, check.whole("order", order, least=0, remedy="give 1 or 2"))
+        return _evaluated(self, x, y, direction, check.whole("order", order, least=0, remedy="give 0, 1 or 2"))
 
     @property
     def supports(self) -> Array:

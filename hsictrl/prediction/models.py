@@ -102,8 +102,8 @@ def predict(
     sense_at : array_like, shape (p,) or (p, 2), optional
         Where accelerations are read; at the first mode's antinode if not given [m].
     warm_up : float, optional
-        Time between a full deck and the window; max(T, 5/(ξω)) by the model's own damping if not given;
-        the steady state of "SF" has none [s].
+        Time between a full deck and the window; max(T, 5/(ξω)) by the model's own damping if not given. The steady
+        state of "SF" has none, and traffic made by hand is taken as it is [s].
 
     Returns
     -------

@@ -13,7 +13,8 @@ from hsictrl.pedestrian import Crowd
 from hsictrl.stepper.kernel import Bridge, Contacts
 
 POINTS = 513     # of a shape along the deck: the cubic between them loses 3e-11 of a half wave
-TABLES_SUFFICE = 0.01     # s; at shorter steps the tables of the forces are to be finer, too
+TABLES_SUFFICE = 0.01     # s; at shorter steps the tables of the forces are to be finer, too,
+FINEST = 5                # but not more than 2^5 times, which leaves an error of 1e-11
 
 # quadrature over (0, 1), exact for polynomials of degree 11
 NODES, WEIGHTS = (1 + np.polynomial.legendre.leggauss(6)[0]) / 2, np.polynomial.legendre.leggauss(6)[1] / 2
@@ -39,7 +40,7 @@ class Deck:
     def __init__(self, crowd: MovingCrowd, step: float, blocks: Array) -> None:
         walkers = crowd.traffic.walkers
         self._crowd, self._step = crowd, step
-        self._finer = 1 << max(0, int(np.log2(TABLES_SUFFICE / step)))
+        self._finer = 1 << min(max(0, int(np.log2(TABLES_SUFFICE / step))), FINEST)
         self._walkers = walkers.part(crowd.bridge.carries(np.column_stack([0 * walkers.offset, walkers.offset])))
         lateral = self._walkers.bodies.direction != "vertical"
         self._who = np.concatenate([np.arange(len(lateral)), np.flatnonzero(lateral)])
@@ -71,7 +72,9 @@ class Deck:
 
     def enter(self, block: int) -> None:
         """Let those go who have left, and seat those who come during a block, at rest."""
-        self._free[self._seat[(self._last == block - 1) & (self._seat >= 0)]] = True
+        gone = self._seat[(self._last == block - 1) & (self._seat >= 0)]
+        self._free[gone] = True
+        self.contacts.paths[:2, gone], self.contacts.combs[gone] = np.inf, 0.0    # a body may come that has no force
         new = np.flatnonzero((self._first == block) & (self._last >= block))
         self._seat[new] = seats = np.flatnonzero(self._free)[:len(new)]
         self._free[seats] = False

@@ -17,9 +17,10 @@ from hsictrl.stepper.clock import Clock
 LONGEST_STEP = 0.0125     # s; resolves how bodies of up to 4 Hz and the deck answer each other, to 1e-6 … 4e-5
 MODE_MARGIN = 25.0        # default steps in a period of the highest mode, and
 FEWEST = 10.0             # fewest in a period, and while a walker crosses
+CROSSING_MARGIN = 100.0   # default steps while a walker crosses
 TOLERANCE = 6e-5          # estimated error that the default step keeps: 1e-4, since an estimate may be two thirds
 HALVINGS = 6
-MOST_BEFORE = 10_000_000  # double steps before the window: hours of arrivals
+MOST_STEPS = 10_000_000   # in the window, and pairs of steps before it: a day of arrivals
 # Two roads of order p differ by 2^p − 1 errors of the finer. This divisor keeps the estimate within 2/3 and 5 times
 # the error for every order from 3.1 to 5.8.
 SPREAD = 11.0
@@ -90,7 +91,8 @@ def simulate(
     Raises
     ------
     ValueError
-        If the step is too long for a mode or for a walker, nothing acts in the window, or shapes do not match.
+        If the step is too long for a mode, for a walker or for what people do to the bridge, nobody has arrived when
+        the window ends, or shapes do not match.
 
     Examples
     --------
@@ -158,7 +160,7 @@ def _error(fine: Array, coarse: Array) -> float:
 
 def _default_step(crowd: MovingCrowd) -> float:
     """Step that resolves modes, bodies, and how long anybody stays; the error tells whether it suffices [s]."""
-    return min(LONGEST_STEP, 1 / (MODE_MARGIN * _highest(crowd)), _quickest(crowd) / FEWEST)
+    return min(LONGEST_STEP, 1 / (MODE_MARGIN * _highest(crowd)), _quickest(crowd) / CROSSING_MARGIN)
 
 
 def _checked_step(crowd: MovingCrowd, step: float) -> float:
@@ -187,13 +189,16 @@ def _clock(crowd: MovingCrowd, timepts: Any, longest: float, forced: bool, start
     """Steps in pairs through the times, early enough for all, and in step with forces that have kinks there."""
     if timepts is None:
         start, end = crowd.traffic.observed(crowd.bridge)
+        if (end - start) / longest > MOST_STEPS:
+            raise ValueError(f"the window must hold at most {MOST_STEPS:.0e} steps of {longest:.3g} s, got "
+                             f"{end - start:.3g} s; give the traffic a window, or timepts")
         timepts = np.linspace(start, end, int(np.ceil((end - start) / longest - 1e-9)) + 1)
     times = check.even_times("timepts", timepts)
     given, pace = (times[-1] - times[0]) / (len(times) - 1), 2 if forced else 1
     first = times[0] if starts_there else np.min(crowd.traffic.walkers.arrival, initial=times[0])
     clock = Clock(times=times, start=float(first), substeps=pace * int(np.ceil(given / longest / pace - 1e-9)))
-    if clock.pairs_before > MOST_BEFORE:
-        raise ValueError(f"traffic must begin at most {MOST_BEFORE:.0e} double steps before timepts, got an arrival "
+    if clock.pairs_before > MOST_STEPS:
+        raise ValueError(f"traffic must begin at most {MOST_STEPS:.0e} double steps before timepts, got an arrival "
                          f"{times[0] - first:g} s before; leave the early ones out with since(), or give an "
                          "initial_state")
     return clock

@@ -182,7 +182,7 @@ class ForceLines:
         >>> table.shape, float((table[0, 0] + 4 * table[0, 1] + table[0, 2]).round(6))    # F(0)
         ((1, 1028), 301.0)
         """
-        return _tables(self.coefficients, self._indices, check.whole("finer", finer, least=1, remedy="give 1"))
+        return _tables(self.coefficients, self._indices, check.whole("finer", finer, least=1, remedy="give 1, 2, …"))
 
     @property
     def _indices(self) -> Whole:
