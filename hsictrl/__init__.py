@@ -21,18 +21,18 @@ from hsictrl.resonance import (
     frf,
 )
 from hsictrl.stepper import Simulation, simulate
-from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule, monte_carlo, trial_rng
+from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo, trial_rng
 from hsictrl.walking import ForceLines, HarmonicForce, MainHarmonics, WalkingForce, YoungForce, ZivanovicForce
 
 __version__ = "0.1.0"
 
 __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode",
-    "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population",
+    "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge",
+    "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population",
     "Prediction", "Shape", "Simulation", "SineShape", "StopRule", "Traffic", "Walker", "Walkers", "WalkingForce",
     "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "effective",
-    "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "frf", "guide_value",
-    "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge",
-    "resonant_step_frequency", "simulate", "study_effective", "trial_rng", "tune", "weidmann_speed",
+    "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect",
+    "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency",
+    "simulate", "study_effective", "trial_rng", "tune", "weidmann_speed",
 ]

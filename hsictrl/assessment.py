@@ -16,7 +16,7 @@ from hsictrl.coupling import couple
 from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import MODELS, Prediction, predict, predict_tuned, tune
 from hsictrl.resonance import effective
-from hsictrl.study import AllRules, Ensemble, MeanRule, PercentileRule, StopRule, monte_carlo
+from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
 PERSON_MASS = 70.0   # kg, of the guides
@@ -199,6 +199,7 @@ class Assessment:
 def assess(
     bridge: Footbridge, flow: CrowdFlow, *, force: WalkingForce | None = None,
     rule: PercentileRule = PAPER_RULE, seed: int = 1, executor: Executor | None = None,
+    ledger: Ledger | None = None,
 ) -> Assessment:
     """Assess a footbridge under a flow of people: damping, accelerations, comfort class.
 
@@ -219,6 +220,8 @@ def assess(
         Seed of all trials [-].
     executor : concurrent.futures.Executor, optional
         Where trials run; in place if not given.
+    ledger : Ledger, optional
+        Keeps the trials, and gives those that it holds.
 
     Returns
     -------
@@ -236,8 +239,9 @@ def assess(
     force = ZivanovicForce() if force is None else force
     peaks = {model: monte_carlo(
         PeakTrial(model=model, bridge=bridge, flow=flow, force=force), rule=rule, seed=seed, executor=executor,
-        label=f"{flow}, {model}") for model in ("MF", "PMC")}
-    found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor)
+        ledger=ledger, label=f"{flow}, {model}") for model in ("MF", "PMC")}
+    found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor,
+                            ledger=ledger)
     guide = guide_value(bridge, flow)
     return Assessment(bridge=bridge, flow=flow, effective=found, mf=peaks["MF"], pmc=peaks["PMC"], guide=guide,
                       remarks=_remarks(bridge, flow, guide, peaks | {"effective properties": found}))
@@ -245,7 +249,7 @@ def assess(
 
 def study_effective(
     bridge: Footbridge, flow: CrowdFlow, *, rule: StopRule | None = None, mode: int = 0, seed: int = 1,
-    executor: Executor | None = None,
+    executor: Executor | None = None, ledger: Ledger | None = None,
 ) -> Ensemble:
     """Effective frequency [Hz] and damping [-] of a mode under standing crowds drawn from a flow (section 3.3).
 
@@ -263,6 +267,8 @@ def study_effective(
         Seed of all trials [-].
     executor : concurrent.futures.Executor, optional
         Where trials run; in place if not given.
+    ledger : Ledger, optional
+        Keeps the trials, and gives those that it holds.
 
     Returns
     -------
@@ -278,7 +284,7 @@ def study_effective(
     """
     trial = EffectiveTrial(bridge=bridge, flow=flow, mode=mode)
     rule = effective_rule() if rule is None else rule
-    return monte_carlo(trial, rule=rule, seed=seed, executor=executor, label=f"{flow}, effective")
+    return monte_carlo(trial, rule=rule, seed=seed, executor=executor, ledger=ledger, label=f"{flow}, effective")
 
 
 def effective_rule(tolerance: float = 0.05) -> AllRules:

@@ -99,15 +99,15 @@ def test_processes_and_figure_leave_the_digits_alone(young, found, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
 
-def test_options_reach_the_study(monkeypatch, found):
-    calls = []
+def test_options_reach_the_study(monkeypatch, found, tmp_path):
+    calls, book = [], tmp_path / "study.ledger"
     monkeypatch.setattr(assessment, "assess", lambda *args, **kwargs: calls.append((args, kwargs)) or found[0])
     run("assess", "--frequency", 3.25, "--damping", 0.01, "--modal-mass", 40e3, "--density", 0.3, "--density", 1.0,
-        "--percentile", 90, "--tolerance", 0.2, "--seed", 8)
+        "--percentile", 90, "--tolerance", 0.2, "--seed", 8, "--ledger", book)
     assert [flow for (_, flow), _ in calls] == [hsi.CrowdFlow(density=0.3), hsi.CrowdFlow(density=1.0)]
     assert str(calls[0][0][0]) == str(hsi.reference_bridge(frequency=3.25, damping=0.01, modal_mass=40e3))
     assert calls[0][1] == {"force": hsi.ZivanovicForce(), "seed": 8, "executor": None,
-                           "rule": hsi.PercentileRule(percentile=90, tolerance=0.2)}
+                           "ledger": hsi.Ledger(book), "rule": hsi.PercentileRule(percentile=90, tolerance=0.2)}
 
 
 def test_without_options_it_is_section_4_2_at_5_percent(monkeypatch, found):

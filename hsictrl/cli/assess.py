@@ -13,7 +13,7 @@ from hsictrl import assessment
 from hsictrl.cli import options, tables
 from hsictrl.cli.description import Description
 from hsictrl.cli.endings import failing, refusing
-from hsictrl.cli.files import checked_figure, whole_file
+from hsictrl.cli.files import checked_figure, checked_ledger, whole_file
 from hsictrl.cli.outcome import Outcome, Rows, one_form
 from hsictrl.cli.tables import Column, estimate
 from hsictrl.cli.workers import checked_processes, workers
@@ -31,6 +31,8 @@ def assess(
     tolerance: options.Tolerance = 0.05,
     seed: options.Seed = None,
     processes: options.Processes = 1,
+    ledger: options.LedgerFile = None,
+    resume: options.Resume = False,
     figure: Annotated[Path | None, typer.Option(
         metavar="FILE", help="Draw the flow with the largest acceleration: frequency responses, one history, "
                              "convergence.")] = None,
@@ -64,11 +66,12 @@ def assess(
                                  seed=seed)
         rule = PercentileRule(percentile=percentile, tolerance=tolerance)
         one_form(as_json, as_csv)
-        processes = checked_processes(processes)
+        processes, book = checked_processes(processes), checked_ledger(ledger, resume)
         figure = None if figure is None else checked_figure(figure)
         _rehearse(case)
     with failing(), workers(processes) as executor:
-        study = partial(assessment.assess, case.bridge, force=case.force, rule=rule, seed=case.seed, executor=executor)
+        study = partial(assessment.assess, case.bridge, force=case.force, rule=rule, seed=case.seed, executor=executor,
+                        ledger=book)
         found = [study(flow) for flow in case.flows]
     if figure is not None:
         _draw(figure, found, case)

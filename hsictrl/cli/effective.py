@@ -13,6 +13,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.cli import options, tables
 from hsictrl.cli.description import Description
 from hsictrl.cli.endings import failing, refusing
+from hsictrl.cli.files import checked_ledger
 from hsictrl.cli.outcome import Outcome, Rows, one_form
 from hsictrl.cli.tables import Column, estimate
 from hsictrl.cli.workers import checked_processes, workers
@@ -32,6 +33,8 @@ def effective(
     tolerance: options.Tolerance = 0.05,
     seed: options.Seed = None,
     processes: options.Processes = 1,
+    ledger: options.LedgerFile = None,
+    resume: options.Resume = False,
     as_json: options.AsJson = False,
     as_csv: options.AsCsv = False,
 ) -> None:
@@ -46,10 +49,10 @@ def effective(
                                  seed=seed)
         rule = MeanRule(tolerance=tolerance)
         one_form(as_json, as_csv)
-        processes = checked_processes(processes)
+        processes, book = checked_processes(processes), checked_ledger(ledger, resume)
     with failing(), workers(processes) as executor:
         study = partial(assessment.study_effective, case.bridge, rule=assessment.effective_rule(tolerance),
-                        seed=case.seed, executor=executor)
+                        seed=case.seed, executor=executor, ledger=book)
         found = [study(flow) for flow in case.flows]
     rows = [_row(case.bridge, *pair) for pair in zip(case.flows, found, strict=True)]
     Outcome(

@@ -8,6 +8,8 @@ from typing import NoReturn
 
 import typer
 
+from hsictrl.study import ChangedStudyError
+
 FAILED, REFUSED = 1, 2
 
 
@@ -22,9 +24,11 @@ def refusing() -> Iterator[None]:
 
 @contextmanager
 def failing() -> Iterator[None]:
-    """Report a trial that failed, or a worker that died, with exit code 1."""
+    """Report a trial that failed, or a worker that died, with exit code 1; a ledger of another study with 2."""
     try:
         yield
+    except ChangedStudyError as error:
+        _stop(error, REFUSED)
     except RuntimeError as error:
         _stop(error, FAILED)
 

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import typer
 
+from hsictrl.study import Ledger
+
 
 def checked_folder(folder: Path) -> Path:
     """Return the folder if files can be written into it."""
@@ -38,6 +40,20 @@ def _checked_file(name: str, path: Path, endings: Sequence[str]) -> Path:
         raise ValueError(f"{name} must be a file that ends in one of .{', .'.join(endings)}, got {path}; rename it")
     checked_folder(path.parent)
     return path
+
+
+def checked_ledger(path: Path | None, resume: bool) -> Ledger | None:
+    """Return the ledger if it may be written; one that holds trials only to go on with them."""
+    if path is None:
+        if resume:
+            raise ValueError("--resume must come with the ledger to go on with, got none; add --ledger FILE")
+        return None
+    ledger = Ledger(path)
+    held = sum(ledger.trials().values())
+    if held and not resume:
+        raise ValueError(f"--ledger must be a new file, got {path}, which holds {held} trials; add --resume to go on "
+                         "with them, or choose another file")
+    return ledger
 
 
 @contextmanager

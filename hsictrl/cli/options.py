@@ -30,6 +30,9 @@ Seed = Annotated[int | None, typer.Option(
     metavar="WHOLE", help="Seed of all trials, in place of FILE's [default: 1].")]
 Processes = Annotated[int, typer.Option(
     metavar="WHOLE", help="Processes that run the trials; the digits do not depend on it.")]
+LedgerFile = Annotated[Path | None, typer.Option(
+    "--ledger", metavar="FILE", show_default=False, help="Keep each batch of trials in FILE as it finishes.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with the trials that the ledger holds.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV.")]
 

@@ -1,29 +1,28 @@
-"""Running trials: each from a random stream of its own, read in index order."""
+"""Running trials until a rule is content with them, read in index order."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Executor
-from functools import partial
+from contextlib import AbstractContextManager, nullcontext
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._progress import progress
+from hsictrl.study.batches import Batches, Trial
 from hsictrl.study.ensembles import Ensemble
+from hsictrl.study.identity import described
+from hsictrl.study.ledger import Account, Ledger, account
 from hsictrl.study.rules import Judgement, PercentileRule, StopRule, judged
 
-Trial = Callable[[np.random.Generator], ArrayLike]
-
-_PIECE = 5            # trials in one message to a worker
 _PAPER_RULE = PercentileRule()
 
 
 def monte_carlo(
     trial: Trial, *, rule: StopRule = _PAPER_RULE, seed: int = 1, executor: Executor | None = None,
-    max_trials: int = 20_000, label: str = "trials",
+    max_trials: int = 20_000, label: str = "trials", ledger: Ledger | None = None,
 ) -> Ensemble:
     """Run independent trials until their estimate has settled.
 
@@ -41,7 +40,10 @@ def monte_carlo(
     max_trials : int
         Trials after which an ensemble that has not settled is returned all the same [-].
     label : str
-        What the progress bar calls the trials; a bar is drawn only if stderr is a terminal.
+        What the progress bar calls the trials, drawn only if stderr is a terminal, and the name of the study in
+        its ledger.
+    ledger : Ledger, optional
+        Keeps each batch of trials as it finishes, and gives those that it holds in place of running them again.
 
     Returns
     -------
@@ -62,12 +64,12 @@ def monte_carlo(
     >>> ensemble.converged, bool(ensemble.interval[0] < 2.448 < ensemble.interval[1])
     (True, True)
     """
-    _check_study(trial, rule, seed, executor, max_trials)
+    _check_study(trial, rule, seed, executor, max_trials, ledger)
     samples: list[Array] = []
-    with progress() as bar:
-        task = bar.add_task(label, total=None)
+    with _account(ledger, label, trial, seed) as kept, progress() as bar:
+        task, batches = bar.add_task(label, total=None), Batches(trial, seed, executor, kept)
         for n in checkpoints(rule, max_trials):
-            for value in _values(trial, seed, range(len(samples), n), executor):
+            for value in batches.values(range(len(samples), n)):
                 samples.append(_alike(value, samples))
                 bar.advance(task)
             judgement = judged(rule, np.array(samples))
@@ -77,32 +79,6 @@ def monte_carlo(
         samples=np.array(samples), estimate=judgement.estimate, interval=judgement.interval,
         converged=judgement.converged, reason=_ending(judgement, max_trials), seed=seed, rule=rule,
     )
-
-
-def trial_rng(seed: int, index: int) -> np.random.Generator:
-    """Rebuild the random generator of one trial, to run that trial alone.
-
-    Parameters
-    ----------
-    seed : int
-        Seed of the study [-].
-    index : int
-        Index of the trial, from 0 [-].
-
-    Returns
-    -------
-    numpy.random.Generator
-        The generator that `monte_carlo` hands to this trial.
-
-    Examples
-    --------
-    >>> ensemble = monte_carlo(lambda rng: rng.normal(1.0, 0.1), seed=3)
-    >>> bool(trial_rng(3, 17).normal(1.0, 0.1) == ensemble.samples[17])
-    True
-    """
-    check.whole("seed", seed, least=0, remedy="give the seed of the study")
-    check.whole("index", index, least=0, remedy="count trials from 0")
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
 
 
 def checkpoints(rule: StopRule, most: int) -> Iterator[int]:
@@ -132,25 +108,10 @@ def checkpoints(rule: StopRule, most: int) -> Iterator[int]:
     yield most
 
 
-def _values(trial: Trial, seed: int, indices: range, executor: Executor | None) -> Iterator[Array]:
-    over = map if executor is None else executor.map
-    pieces = [indices[i:i + _PIECE] for i in range(0, len(indices), _PIECE)]
-    for piece in over(partial(_run_piece, trial, seed), pieces):
-        yield from piece
-
-
-def _run_piece(trial: Trial, seed: int, indices: Iterable[int]) -> list[Array]:
-    return [_run(trial, seed, index) for index in indices]
-
-
-def _run(trial: Trial, seed: int, index: int) -> Array:
-    again = f"rerun it alone with trial(trial_rng({seed}, {index}))"
-    try:
-        value = trial(trial_rng(seed, index))
-    except Exception as error:
-        cause = f"{type(error).__name__}: {error}"
-        raise RuntimeError(f"trial {index} of seed {seed} failed: {cause}; {again}") from error
-    return check.numbers(f"result of trial {index} of seed {seed}", value, remedy=again)
+def _account(
+    ledger: Ledger | None, label: str, trial: Trial, seed: int,
+) -> AbstractContextManager[Account | None]:
+    return nullcontext() if ledger is None else account(ledger, label, described(trial, seed))
 
 
 def _alike(value: Array, samples: list[Array]) -> Array:
@@ -168,7 +129,9 @@ def _ending(judgement: Judgement, max_trials: int) -> str:
     return stopped + judgement.reason
 
 
-def _check_study(trial: Trial, rule: StopRule, seed: int, executor: Executor | None, max_trials: int) -> None:
+def _check_study(
+    trial: Trial, rule: StopRule, seed: int, executor: Executor | None, max_trials: int, ledger: Ledger | None,
+) -> None:
     if not callable(trial):
         raise TypeError(f"trial must be callable, got {trial!r}; give a function of a numpy.random.Generator")
     check.instance("rule", rule, StopRule, "give PercentileRule(...), MeanRule(...) or AllRules([...])")
@@ -176,3 +139,5 @@ def _check_study(trial: Trial, rule: StopRule, seed: int, executor: Executor | N
     check.whole("max_trials", max_trials, least=1, remedy="allow at least one trial")
     if executor is not None:
         check.instance("executor", executor, Executor, "give one of concurrent.futures, or None to run in place")
+    if ledger is not None:
+        check.instance("ledger", ledger, Ledger, "give Ledger(path), or None to keep nothing")
