@@ -124,7 +124,7 @@ def peak_factor(percentile: float, correlation: Array, lag: float, duration: flo
     >>> round(peak_factor(95.0, frozen, 0.1, duration=0.0), 3)        # √(−2 ln 0.05), one Rayleigh variable
     2.448
     >>> round(peak_factor(95.0, fading, 0.1, duration=100.0), 1)
-    3.8
+    4.0
     """
     def excess(level: float) -> float:
         below = np.log(-np.expm1(-level**2 / 2))
