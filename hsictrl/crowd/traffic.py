@@ -79,10 +79,7 @@ class Traffic:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the results should know, in sentences."""
-        low, high = WALKING_RANGE
-        if low <= self.target <= high:
-            return ()
-        return (f"the mean step frequency {self.target:.2f} Hz lies outside {low}–{high} Hz, where people walk",)
+        return step_remarks(self.target)
 
     def tuned(self, step_frequency: float) -> Traffic:
         """The same walkers with step frequencies about another mean; forces are rebuilt from the same draws.
@@ -270,6 +267,14 @@ class Traffic:
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
         return replace(self, walkers=walkers, target=target, rng=None)
+
+
+def step_remarks(mean: float) -> tuple[str, ...]:
+    """What to say about a mean step frequency [Hz] at which nobody walks."""
+    low, high = WALKING_RANGE
+    if low <= mean <= high:
+        return ()
+    return (f"the mean step frequency {mean:.2f} Hz lies outside {low}–{high} Hz, where people walk",)
 
 
 def _by_hand(walkers: Sequence[Walker], rng: np.random.Generator | None) -> Walkers:
