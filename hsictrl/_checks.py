@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -28,12 +28,14 @@ def number(
 
 def numbers(
     name: str, values: Any, *, above: float | None = None, least: float | None = None,
-    below: float | None = None, most: float | None = None, remedy: str, ndim: int | None = None,
+    below: float | None = None, most: float | None = None, remedy: str, ndim: int | None = None, count: int = 0,
 ) -> Array:
-    """Return `values` as a read-only float array, finite and within the bounds; refuse anything else."""
+    """Return `values`, at least `count`, as a read-only float array, finite and within the bounds; refuse others."""
     array = _real(name, values, remedy).copy()
     if ndim is not None and array.ndim != ndim:
         raise ValueError(f"{name} must have {ndim} dimension(s), got shape {array.shape}; {remedy}")
+    if array.size < count:
+        raise ValueError(f"{name} must hold at least {count} number(s), got {array.size}; {remedy}")
     _bound(name, array, above, least, below, most, remedy)
     array.flags.writeable = False
     return array
@@ -71,9 +73,16 @@ def instance(name: str, value: Any, kind: type | tuple[type, ...], remedy: str) 
     """Return `value` if it is an instance of `kind`; refuse anything else."""
     if not isinstance(value, kind):
         kinds = kind if isinstance(kind, tuple) else (kind,)
-        names = " or ".join(k.__name__ for k in kinds)
+        names = " or ".join(dict.fromkeys(k.__name__ for k in kinds))    # bool is that of Python and of NumPy
         raise TypeError(f"{name} must be of type {names}, got {type(value).__name__}; {remedy}")
     return value
+
+
+def entries(name: str, given: Any, what: str, remedy: str) -> Mapping[str, Any]:
+    """Return `given` if it is a mapping that holds something; refuse anything else."""
+    if not instance(name, given, Mapping, remedy):
+        raise ValueError(f"{name} must hold at least one {what}, got none; {remedy}")
+    return given
 
 
 def store(thing: Any, **values: Any) -> None:

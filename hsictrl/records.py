@@ -27,7 +27,7 @@ def running_rms(response: ct.TimeResponseData, *, duration: float = 1.0) -> Arra
     Raises
     ------
     ValueError
-        If the duration is not above zero, or the times do not increase.
+        If the duration is not above zero, the times do not increase, or a value is not finite.
 
     Notes
     -----
@@ -45,7 +45,7 @@ def running_rms(response: ct.TimeResponseData, *, duration: float = 1.0) -> Arra
     check.instance("response", response, ct.TimeResponseData, "give predict(...).response, or make one of a record")
     window = check.number("duration", duration, above=0, remedy="give seconds; ISO 2631-1 recommends 1")
     time = _increasing(response.time)
-    square = np.asarray(response.outputs, dtype=np.float64)**2
+    square = _outputs(response)**2
     length = np.minimum(window, time - time[0])[1:]
     mean = _energy_of_last(time, square, window)[..., 1:] / length
     return np.sqrt(np.concatenate([square[..., :1], mean], axis=-1))
@@ -69,7 +69,7 @@ def amplitude_spectrum(response: ct.TimeResponseData) -> tuple[Array, Array]:
     Raises
     ------
     ValueError
-        If the times do not increase evenly.
+        If the times do not increase evenly, or a value is not finite.
 
     Notes
     -----
@@ -88,7 +88,7 @@ def amplitude_spectrum(response: ct.TimeResponseData) -> tuple[Array, Array]:
     time = check.even_times("times of a record", response.time)
     n = len(time)
     window = np.sin(np.pi * np.arange(n) / n)**2   # periodic, so that whole periods leak into two bins and no more
-    lines = np.fft.rfft(window * np.asarray(response.outputs, dtype=np.float64), axis=-1)
+    lines = np.fft.rfft(window * _outputs(response), axis=-1)
     bins = np.arange(n // 2 + 1)
     sides = np.where((bins == 0) | (2 * bins == n), 1.0, 2.0)
     return bins * (n - 1) / (n * (time[-1] - time[0])), sides * np.abs(lines) / np.sum(window)
@@ -112,7 +112,12 @@ def _place(time: Array, moments: Array) -> tuple[np.ndarray, Array]:
     return before, np.divide(moments - time[before], gap, out=np.zeros_like(gap), where=gap > 0)
 
 
-def _increasing(time: Array) -> Array:
+def _outputs(response: ct.TimeResponseData) -> Array:
+    return check.numbers("outputs of a record", response.outputs, remedy="cut or fill what was not measured")
+
+
+def _increasing(given: Array) -> Array:
+    time = check.numbers("times of a record", given, ndim=1, count=1, remedy="give seconds")
     steps = np.diff(time)
     if np.any(steps <= 0):
         i = int(np.argmax(steps <= 0))

@@ -258,6 +258,13 @@ def test_traffic_by_hand_is_observed_from_first_arrival_to_last_departure():
     assert Traffic([slow, fast], window=(5.0, 9.0)).observed(BRIDGE) == (5.0, 9.0)
 
 
+def test_traffic_of_nobody_needs_a_target():
+    nobody = Walkers.of([walker()]).part(np.array([], dtype=int))
+    with pytest.raises(ValueError, match="target must be given where there are no walkers, got None; give target"):
+        Traffic(nobody, window=(0.0, 10.0))
+    assert Traffic(nobody, window=(0.0, 10.0), target=2.0).target == 2.0
+
+
 def test_walkers_go_in_and_come_out_as_they_are():
     given_ = [walker(body=Pedestrian(mass=60.0 + i), force=force, weight=600.0 + i, speed=1.0 + i, arrival=1.0 * i,
                      offset=0.1 * i) for i, force in enumerate([COSINE, YoungForce(), COSINE])]

@@ -1,6 +1,6 @@
 """Asserted on the data that is drawn, not on images; truth is what went in."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import combinations
 from pathlib import Path
 
@@ -33,6 +33,7 @@ from hsictrl.plots import (
     normalised_frf_plot,
     persons_plot,
     response_plot,
+    save,
     save_animation,
     simulation_figure,
     spectrum_plot,
@@ -231,6 +232,8 @@ def test_normalised_frf_refusals() -> None:
         normalised_frf_plot([0.9, 1.0, 1.1], {"few": {"100": FRFS[1]}}, empty=FRFS[0])
     with pytest.raises(ValueError, match="panels must hold at least one panel, got none; give"):
         normalised_frf_plot(HERTZ, {}, empty=FRFS[0])
+    with pytest.raises(TypeError, match="panels must be of type Mapping, got NoneType; give"):
+        normalised_frf_plot(HERTZ, None, empty=FRFS[0])
 
 
 # time
@@ -274,6 +277,8 @@ def test_response_refusals() -> None:
         response_plot(both)
     with pytest.raises(TypeError, match="responses must be of type TimeResponseData, got ndarray; give predict"):
         response_plot(TIME)
+    with pytest.raises(ValueError, match=r"outputs of a record\[7\] must be finite, got nan; cut or fill"):
+        response_plot(ct.TimeResponseData(TIME, np.where(np.arange(1001) == 7, np.nan, 1.0), issiso=True))
 
 
 def test_people_are_drawn_as_steps_from_zero(ax: Axes) -> None:
@@ -291,6 +296,8 @@ def test_persons_refusals() -> None:
         persons_plot([0.0, 1.0, 2.0], [1, 2])
     with pytest.raises(ValueError, match=r"persons\[0\] must be at least 0, got -1; count them"):
         persons_plot([0.0], [-1])
+    with pytest.raises(ValueError, match=r"times must hold at least 1 number\(s\), got 0; give a list of seconds"):
+        persons_plot([], [])
 
 
 def test_spectrum_is_drawn_over_hertz_with_marks_at_their_frequencies(ax: Axes) -> None:
@@ -323,6 +330,13 @@ def test_spectrum_refusals() -> None:
         spectrum_plot(RECORDS[0], marks={"steps": -1.0})
     with pytest.raises(TypeError, match="response must be of type TimeResponseData, got ndarray; give predict"):
         spectrum_plot(TIME)
+    with pytest.raises(ValueError, match=r"marks\['a'\] must hold at least 1 number\(s\), got 0; give Hz"):
+        spectrum_plot(RECORDS[0], marks={"a": []})
+    with pytest.raises(ValueError, match=r"marks\['a'\] must have 1 dimension\(s\), got shape \(2, 2\); give Hz"):
+        spectrum_plot(RECORDS[0], marks={"a": [[1, 2], [3, 4]]})
+    with pytest.raises(TypeError, match=r"marks must be of type Mapping, got list; give \{label: frequencies in Hz\}"):
+        spectrum_plot(RECORDS[0], marks=[1, 2])
+    assert plt.get_fignums() == []
 
 
 def test_simulation_figure_composes_the_three_plots() -> None:
@@ -555,6 +569,29 @@ def test_schematic_refusals() -> None:
         models_plot(BRIDGE, SCENES, ax=plt.subplots()[1])
 
 
+@pytest.mark.parametrize(("scene", "kind", "refusal"), [
+    ({"forces_at_m": [[10.0, 0.0]]}, ValueError, r"\['forces_at_m'\] must have 1 dim.*, got shape \(1, 2\); give"),
+    ({"forces_at_m": 10.0}, ValueError, r"\['forces_at_m'\] must have 1 dim.*, got shape \(\); give a list of x"),
+    ({"forces_move": "no"}, TypeError, r"\['forces_move'\] must be of type bool, got str; give True or False"),
+    ({"bodies_move": 1}, TypeError, r"\['bodies_move'\] must be of type bool, got int; give True or False")])
+def test_scenes_that_cannot_be_drawn_are_refused(scene: dict[str, object], kind: type, refusal: str) -> None:
+    with pytest.raises(kind, match=r"panels\['a'\]" + refusal):
+        models_plot(BRIDGE, {"a": SCENES["one"] | scene})
+
+
+@pytest.mark.parametrize(("panels", "refusal"), [
+    (None, r"panels must be of type Mapping, got NoneType; give \{title"),
+    ({"a": None}, r"panels\['a'\] must be of type Mapping, got NoneType; give \{'forces_at_m'")])
+def test_models_without_scenes_are_refused(panels: object, refusal: str) -> None:
+    with pytest.raises(TypeError, match=refusal):
+        models_plot(BRIDGE, panels)
+
+
+def test_whether_scenes_move_may_come_from_numpy() -> None:
+    plot = models_plot(BRIDGE, {"a": SCENES["one"] | {"forces_move": np.bool_(True)}})
+    assert len(drawn(plot.axes[0, 0], "force motion")) == 2
+
+
 # animation
 
 LONG = hsi.Footbridge.simply_supported(length=40.0, width=3.0, mass=40e3, frequency=2.0, damping=0.005, n_modes=2)
@@ -688,6 +725,9 @@ def test_animation_refusals(tmp_path: Path) -> None:
         crossing_animation(CROWD, ct.TimeResponseData(MOVED.time, MOVED.outputs, np.zeros((2, 601)), issiso=True))
     with pytest.raises(ValueError, match=r"span must be \(start, end\) within 0 to 60 s, got \(50.0, 61.0\); choose"):
         crossing_animation(CROWD, MOVED, span=(50.0, 61.0))
+    for span, samples in (((20.001, 20.002), 0), ((20.05, 20.15), 1)):
+        with pytest.raises(ValueError, match=rf"span must hold at least two samples.*, got {samples} from 20.*; widen"):
+            crossing_animation(CROWD, MOVED, span=span)
     with pytest.raises(ValueError, match="rate must be above 0, got 0; give pictures per second"):
         crossing_animation(CROWD, MOVED, rate=0)
     with pytest.raises(TypeError, match="crowd must be of type MovingCrowd, got Footbridge; make it"):
@@ -700,6 +740,24 @@ def test_animation_refusals(tmp_path: Path) -> None:
     assert plt.get_fignums() == []
     with pytest.raises(TypeError, match="figure of ax must be of type Figure, got SubFigure; make it"):
         crossing_animation(CROWD, MOVED, ax=plt.figure().subfigures().subplots(2))
+
+
+# files
+
+@pytest.mark.parametrize("kind", [str, Path])
+def test_files_are_named_by_words_or_paths(kind: type, tmp_path: Path) -> None:
+    save(persons_plot(TIME, PERSONS), kind(tmp_path / "a.png"))
+    save_animation(crossing_animation(CROWD, MOVED, span=(0.0, 0.1)), kind(tmp_path / "a.gif"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.png"]
+    assert plt.get_fignums() == []
+
+
+@pytest.mark.parametrize("write", [save, save_animation])
+def test_files_without_a_name_are_refused(write: Callable) -> None:
+    with pytest.raises(TypeError, match="path must be of type str or PathLike, got int; give the name of a file"):
+        write(persons_plot(TIME, PERSONS), 3)
+
+
 # bars
 
 BARS = {"sparse": {"MF": [2.0, 1.9, 2.2], "PMC": [1.0, 0.9, 1.1]},
@@ -744,9 +802,20 @@ def test_bars_on_given_axes_make_no_figure() -> None:
 def test_bars_that_do_not_fit_are_refused() -> None:
     with pytest.raises(ValueError, match=r"panels must fill their rows, got 3 in 2 columns; give a divisor of 3"):
         bars_plot({"a": BARS, "b": BARS, "c": BARS}, columns=2)
-    with pytest.raises(ValueError, match=r"every group must hold the same bars, got .*; give at least one group"):
+    with pytest.raises(ValueError, match=r"every group must hold the same bars, got .*; give all alike"):
         bars_plot({"a": {**BARS, "odd": {"MF": [1.0, 0.9, 1.1]}}})
-    with pytest.raises(ValueError, match=r"every group must hold the same bars, got \[\]"):
-        bars_plot({})
     with pytest.raises(ValueError, match=r"panels\['a'\]\['one'\]\['MF'\] must hold 3 numbers, got 2; give estimate"):
         bars_plot({"a": {"one": {"MF": [1.0, 0.9]}}})
+
+
+@pytest.mark.parametrize(("panels", "kind", "refusal"), [
+    ({}, ValueError, r"panels must hold at least one panel, got none; give \{title"),
+    ({"a": BARS, "b": {}}, ValueError, r"panels\['b'\] must hold at least one group, got none; give \{group"),
+    ({"a": {"g": {}}}, ValueError, r"panels\['a'\]\['g'\] must hold at least one bar, got none; give \{bar"),
+    ([1, 2], TypeError, r"panels must be of type Mapping, got list; give \{title"),
+    ({"a": 1}, TypeError, r"panels\['a'\] must be of type Mapping, got int; give \{group"),
+    ({"a": {"g": [1.0]}}, TypeError, r"panels\['a'\]\['g'\] must be of type Mapping, got list; give \{bar")])
+def test_bars_that_are_missing_are_refused(panels: object, kind: type, refusal: str) -> None:
+    with pytest.raises(kind, match=refusal):
+        bars_plot(panels)
+    assert plt.get_fignums() == []

@@ -1,5 +1,7 @@
 """Truth here: the RMS of a sine, of a constant, ISO 2631-1's integral by brute force; spectra in closed form."""
 
+from collections.abc import Callable
+
 import control as ct
 import numpy as np
 import pytest
@@ -76,6 +78,16 @@ def test_refusals() -> None:
         running_rms(record(time, time), duration=0.0)
     with pytest.raises(ValueError, match=r"times of a record must increase, got 1 s and then 0.9 s; sort"):
         running_rms(record(time[::-1], time))
+    with pytest.raises(ValueError, match=r"times of a record\[10\] must be finite, got nan; give seconds"):
+        running_rms(record(np.append(time[:-1], np.nan), time))
+
+
+@pytest.mark.parametrize("read", [running_rms, amplitude_spectrum])
+@pytest.mark.parametrize("hole", [np.nan, np.inf])
+def test_records_with_holes_are_refused(read: Callable, hole: float) -> None:
+    time = np.linspace(0.0, 1.0, 11)
+    with pytest.raises(ValueError, match=rf"outputs of a record\[1, 3\] must be finite, got {hole}; cut or fill"):
+        read(record(time, np.array([time, np.where(np.arange(11) == 3, hole, time)])))
 
 
 # amplitude spectrum

@@ -171,6 +171,16 @@ def test_a_reading_changes_what_it_says() -> None:
     assert len({reading.name for reading in readings.READINGS}) == len(readings.READINGS)
 
 
+def test_the_name_of_a_reading_tells_all_its_changes() -> None:
+    changed = [sum(getattr(reading, field) != getattr(DEFAULT, field)
+                   for field in ("damping", "modal_mass", "warm_up", "tuned_to")) for reading in readings.READINGS]
+    assert changed == [0, *(len(reading.name.split(", ")) for reading in readings.READINGS[1:])]
+    assert max(changed) == 2
+    caption = readings.report(False, None).caption
+    assert "each changing what its name says of the default (ξ_B 0.5 %, m_B 25 t" in caption
+    assert "one change" not in caption
+
+
 def test_readings_by_a_second_road() -> None:
     heavy = Reading(name="heavy", modal_mass=50e3)
     rows = readings.study([heavy, DEFAULT], [SPARSE], trials=5)
@@ -376,7 +386,17 @@ def test_deviations_are_counted_by_hand() -> None:
 def test_claim_of_load_cycles(ratios: list[float], width: float, holds: bool | None) -> None:
     rows = [{"load_cycles": 75.0 * 2**i, **Interval(value, value - width, value + width).row("sf_over_mf"),
              **Interval(1.0, 0.95, 1.05).row("sf_over_instant")} for i, value in enumerate(ratios)]
-    assert claims_table2.findings([], rows)["C40"]()[1] is holds
+    _, found, reason = claims_table2.findings([], rows)["C40"]()
+    assert found is holds
+    assert ("overlap" in reason) is (holds is None)
+
+
+def test_claim_of_load_cycles_that_is_undecided_tells_what_overlaps() -> None:
+    """|1.3 ± 0.2 − 1| and |1.0 ± 0.2 − 1|, by hand."""
+    rows = [{"load_cycles": cycles, **Interval(value, value - 0.2, value + 0.2).row("sf_over_mf"),
+             **Interval(1.0, 0.95, 1.05).row("sf_over_instant")} for cycles, value in ((75.0, 1.3), (600.0, 1.0))]
+    assert claims_table2.findings([], rows)["C40"]()[2] == (
+        "intervals of |SF/MF − 1| overlap: 0.3 [0.1, 0.5] with fewest load cycles, 0 [0, 0.2] with most")
 
 
 def bars(ratio_of: Callable[[str, Cell, str], float], width: float = 0.01) -> Rows:
@@ -408,7 +428,14 @@ def test_claims_of_figure_8_are_judged_for_youngs_force_and_tell_of_the_other() 
     rows = bars(lambda model, cell, force: by_case(model, cell, force) if force == "Young" else 1.6 - 0.2 * cell.case)
     measured, holds, _ = claims_fig8.findings(rows)["C26"]()
     assert holds is True
-    assert "12 of 12 pairs, not in 0 (Young), 0 of 12 pairs, not in 12 (same walkers, periodic)" in measured
+    assert ("12 of 12 pairs, not in 0, undecided in 0 (Young), 0 of 12 pairs, not in 12, undecided in 0 (same walkers, "
+            "periodic)") in measured
+
+
+def test_claims_of_figure_8_count_what_is_undecided() -> None:
+    measured, _, reason = claims_fig8.findings(bars(by_case, 0.3))["C26"]()
+    assert "0 of 12 pairs, not in 0, undecided in 12 (Young)" in measured
+    assert reason == "intervals of 12 pairs overlap"
 
 
 def test_a_trial_of_table2_shares_its_traffic() -> None:

@@ -63,7 +63,7 @@ class Traffic:
     def __post_init__(self, rng: np.random.Generator | None) -> None:
         given: Any = self.walkers
         walkers = given if isinstance(given, Walkers) else _by_hand(given, rng)
-        target = float(np.mean(walkers.step_frequency)) if self.target is None else self.target
+        target = _mean_step(walkers) if self.target is None else self.target
         check.store(
             self, walkers=walkers, target=check.number("target", target, above=0, remedy="give Hz"),
             window=None if self.window is None else _window(self.window),
@@ -281,6 +281,12 @@ def _by_hand(walkers: Sequence[Walker], rng: np.random.Generator | None) -> Walk
     if isinstance(walkers, Sequence) and not walkers:
         raise ValueError("traffic must hold at least one walker, got none; use couple(bridge) for an empty deck")
     return Walkers.of(walkers, rng)
+
+
+def _mean_step(walkers: Walkers) -> float:
+    if not len(walkers):
+        raise ValueError("target must be given where there are no walkers, got None; give target in Hz")
+    return float(np.mean(walkers.step_frequency))
 
 
 def _standing(standing: tuple[Crowd, Array]) -> tuple[Crowd, Array]:

@@ -63,7 +63,8 @@ def _spread(ratios: dict[Condition, Interval]) -> str:
 
 def _count(told: dict[Pair, bool | None]) -> str:
     values = list(told.values())
-    return f"{values.count(True)} of {len(values)} pairs, not in {values.count(False)}"
+    return (f"{values.count(True)} of {len(values)} pairs, not in {values.count(False)}, undecided in "
+            f"{values.count(None)}")
 
 
 def _listed(told: dict[Pair, bool | None], ratios: dict[Condition, Interval]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -88,13 +89,19 @@ def printed_values(rows: Rows) -> Finding:
 def many_load_cycles(rows: Rows) -> Finding:
     """SF over MF tends to one with the number of load cycles."""
     ratios = [Interval.of(row, "sf_over_mf") for row in rows]
-    last, instant = ratios[-1], Interval.of(rows[-1], "sf_over_instant")
+    first, last = ratios[0], ratios[-1]
     listed = ", ".join(f"{one} at {row['load_cycles']:.0f}" for one, row in zip(ratios, rows, strict=True))
-    nearer = ratios[0].distance.above(last.distance)
+    nearer = first.distance.above(last.distance)
     holds = False if last.distance.low > 0 or nearer is False else nearer
-    return (f"SF/MF {listed} load cycles", holds,
-            f"with most load cycles it is {last}: MF's maximum over a crossing sees many crowds while SF sees one; SF "
-            f"over MF's peak in the last step of the same window is {instant}")
+    overlap = f"intervals of |SF/MF − 1| overlap: {first.distance} with fewest load cycles, {last.distance} with most"
+    return f"SF/MF {listed} load cycles", holds, overlap if holds is None else _many_crowds(rows[-1])
+
+
+def _many_crowds(row: dict[str, Any]) -> str:
+    """Why SF stays away from MF, however many load cycles."""
+    return (f"with most load cycles it is {Interval.of(row, 'sf_over_mf')}: MF's maximum over a crossing sees many "
+            "crowds while SF sees one; SF over MF's peak in the last step of the same window is "
+            f"{Interval.of(row, 'sf_over_instant')}")
 
 
 def _larger(

@@ -69,11 +69,11 @@ def report(recompute: bool, executor: Executor | None) -> Report:
     """A row per reading, the closest first."""
     rows = study(READINGS, CELLS, executor) if recompute else committed("readings")
     return Report(name="readings", rows=rows, columns=COLUMNS, study=True, caption=(
-        f"Readings of section 4.1 beside table 2, one change at a time from the default (ξ_B {100 * DEFAULT.damping:g} "
-        f"%, m_B {DEFAULT.modal_mass / 1e3:g} t, warm-up max(T, 5/(ξω)), each model tuned to its own resonance): "
-        f"median and worst deviation of the {len(CELLS) * len(COMPARED)} ratios to MC, relative to the printed ones; "
-        "contained: how many 95 % intervals contain the printed ratio; median_*: of one model alone; same random "
-        "streams for all"))
+        "Readings of section 4.1 beside table 2, each changing what its name says of the default (ξ_B "
+        f"{100 * DEFAULT.damping:g} %, m_B {DEFAULT.modal_mass / 1e3:g} t, warm-up max(T, 5/(ξω)), each model tuned "
+        f"to its own resonance): median and worst deviation of the {len(CELLS) * len(COMPARED)} ratios to MC, "
+        "relative to the printed ones; contained: how many 95 % intervals contain the printed ratio; median_*: of one "
+        "model alone; same random streams for all"))
 
 
 def study(

@@ -59,7 +59,7 @@ def crossing_animation(
     Raises
     ------
     ValueError
-        If the response lacks the states of the modes, or the span leaves its times.
+        If the response lacks the states of the modes, or the span leaves its times or holds fewer than two of them.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def crossing_animation(
     """
     check.instance("crowd", crowd, MovingCrowd, "make it with moving_crowd(bridge, traffic)")
     z = _modal(crowd.bridge, one_output("response", response))
-    start, end = _span(response, span)
+    start, end = _sampled(response, _span(response, span))
     rate = check.number("rate", rate, above=0, remedy="give pictures per second")
     axes = canvas.several_axes(ax, 2, figsize=(8.0, 4.5)).ravel()
     figure = check.instance("figure of ax", axes[0].figure, Figure, "make it with matplotlib.pyplot.subplots(2)")
@@ -211,3 +211,12 @@ def _span(response: ct.TimeResponseData, span: tuple[float, float] | None) -> tu
         raise ValueError(f"span must be (start, end) within {first:g} to {last:g} s, got {tuple(ends.tolist())}; "
                          "choose times of the response")
     return float(ends[0]), float(ends[1])
+
+
+def _sampled(response: ct.TimeResponseData, span: tuple[float, float]) -> tuple[float, float]:
+    """The same span if the response has samples in it."""
+    samples = np.count_nonzero((response.time >= span[0]) & (response.time <= span[1]))
+    if samples < 2:
+        raise ValueError(f"span must hold at least two samples of the response, got {samples} from {span[0]:g} to "
+                         f"{span[1]:g} s; widen it")
+    return span

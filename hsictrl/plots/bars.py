@@ -49,7 +49,8 @@ def bars_plot(
     Raises
     ------
     ValueError
-        If bars have other names in another group, lack an end of the interval, or panels do not fill their rows.
+        If there is no panel, group or bar, bars have other names in another group or lack an end of the interval,
+        or panels do not fill their rows.
 
     Examples
     --------
@@ -109,10 +110,18 @@ def _rows(panels: int, columns: int) -> int:
 
 def _bars(panels: Mapping[str, Groups]) -> list[str]:
     """Names of the bars in a group."""
-    names = [list(bars) for groups in panels.values() for bars in groups.values()]
-    if not names or any(one != names[0] for one in names):
-        raise ValueError(f"every group must hold the same bars, got {names}; give at least one group, and all alike")
+    held = check.entries("panels", panels, "panel", "give {title: {group: {bar: [estimate, low, high]}}}")
+    names = [one for title, groups in held.items() for one in _of_groups(f"panels[{title!r}]", groups)]
+    if any(one != names[0] for one in names):
+        raise ValueError(f"every group must hold the same bars, got {names}; give all alike")
     return names[0]
+
+
+def _of_groups(name: str, groups: Groups) -> list[list[str]]:
+    """Names of the bars of every group of a panel."""
+    held = check.entries(name, groups, "group", "give {group: {bar: [estimate, low, high]}}")
+    return [list(check.entries(f"{name}[{group!r}]", bars, "bar", "give {bar: [estimate, low, high]}"))
+            for group, bars in held.items()]
 
 
 def _values(title: str, groups: Groups, names: list[str]) -> dict[str, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -31,14 +32,14 @@ def file_endings() -> tuple[str, ...]:
     return tuple(sorted(FigureCanvasBase.get_supported_filetypes()))
 
 
-def save(plot: ct.ControlPlot, path: Path) -> None:
+def save(plot: ct.ControlPlot, path: str | os.PathLike[str]) -> None:
     """Write the figure of a plot into a file and close it.
 
     Parameters
     ----------
     plot : control.ControlPlot
         What a plotting function returned.
-    path : pathlib.Path
+    path : str or pathlib.Path
         The file; its ending chooses the format.
 
     Examples
@@ -52,7 +53,7 @@ def save(plot: ct.ControlPlot, path: Path) -> None:
     >>> path.exists()
     True
     """
-    plot.figure.savefig(path, dpi=150)
+    plot.figure.savefig(_path(path), dpi=150)
     plt.close(plot.figure)
 
 
@@ -73,7 +74,8 @@ def animation_endings() -> tuple[str, ...]:
 
 
 def save_animation(
-    animation: FuncAnimation, path: Path, *, after_each: Callable[[int, int], object] | None = None,
+    animation: FuncAnimation, path: str | os.PathLike[str], *,
+    after_each: Callable[[int, int], object] | None = None,
 ) -> None:
     """Write an animation into a file, at the rate for which it was made, and close its figure.
 
@@ -81,7 +83,7 @@ def save_animation(
     ----------
     animation : matplotlib.animation.FuncAnimation
         What `crossing_animation` returned.
-    path : pathlib.Path
+    path : str or pathlib.Path
         The file; its ending chooses the format.
     after_each : callable, optional
         Called after each picture with its index and the number of pictures.
@@ -101,6 +103,11 @@ def save_animation(
     >>> path.exists()
     True
     """
-    ending = check.choice("ending of the file", path.suffix.lstrip("."), animation_endings())
-    animation.save(path, writer=WRITERS[ending], dpi=100, progress_callback=after_each)
+    file = _path(path)
+    ending = check.choice("ending of the file", file.suffix.lstrip("."), animation_endings())
+    animation.save(file, writer=WRITERS[ending], dpi=100, progress_callback=after_each)
     plt.close(animation._fig)  # type: ignore[attr-defined]  # it has no public name
+
+
+def _path(path: str | os.PathLike[str]) -> Path:
+    return Path(check.instance("path", path, (str, os.PathLike), "give the name of a file"))

@@ -106,9 +106,8 @@ def normalised_frf_plot(
     'Frequency ratio f/f_B [-]'
     """
     beta = check.numbers("ratios", ratios, above=0, ndim=1, remedy="give f/f_B")
+    check.entries("panels", panels, "panel", "give {title: {label: response}}")
     curves = {title: _aligned([*each.values(), empty], len(beta)) for title, each in panels.items()}
-    if not panels:
-        raise ValueError("panels must hold at least one panel, got none; give {title: {label: response}}")
     axes = canvas.several_axes(ax, len(panels), figsize=(8.0, 1.0 + 3.0 * len(panels)))
     lines = [_normalised(one, beta, each, [*panels[title], "empty bridge"])
              for one, (title, each) in zip(axes.flat, curves.items(), strict=True)]

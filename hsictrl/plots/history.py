@@ -83,7 +83,7 @@ def persons_plot(times: ArrayLike, persons: ArrayLike, *, ax: Axes | None = None
     Raises
     ------
     ValueError
-        If people are not counted once for each time.
+        If there is no time, or people are not counted once for each.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def persons_plot(times: ArrayLike, persons: ArrayLike, *, ax: Axes | None = None
     >>> plot.axes[0, 0].get_ylabel()
     'People on the deck [-]'
     """
-    times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
+    times = check.numbers("times", times, ndim=1, count=1, remedy="give a list of seconds")
     persons = check.numbers("persons", persons, least=0, ndim=1, remedy="count them with traffic.persons_on")
     if len(persons) != len(times):
         raise ValueError(f"persons must be one number per time, got {len(persons)} for {len(times)}; "

@@ -114,9 +114,8 @@ def models_plot(
     ['140 kg']
     """
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
-    scenes = {title: _checked(bridge, title, scene) for title, scene in panels.items()}
-    if not scenes:
-        raise ValueError("panels must hold at least one panel, got none; give {title: {...}}")
+    check.entries("panels", panels, "panel", "give {title: {...}}")
+    scenes = {title: _checked(bridge, f"panels[{title!r}]", scene) for title, scene in panels.items()}
     rows = len(scenes) // 2 + 1
     axes = canvas.several_axes(ax, rows, figsize=(10.0, 2.2 * rows), columns=2)
     for one, scene in zip(axes.flat, scenes.values(), strict=False):
@@ -225,11 +224,14 @@ def _on_deck(bridge: Footbridge, traffic: Traffic, time: float) -> tuple[Walkers
     return traffic.walkers.part(present), places[present, 0]
 
 
-def _checked(bridge: Footbridge, title: str, scene: Mapping[str, Any]) -> Mapping[str, Any]:
+def _checked(bridge: Footbridge, name: str, scene: Mapping[str, Any]) -> Mapping[str, Any]:
     for key in SCENE:
-        if key not in scene:
-            raise ValueError(f"panels[{title!r}] must hold {', '.join(map(repr, SCENE))}, got no {key!r}; give all")
+        if key not in check.instance(name, scene, Mapping, "give {'forces_at_m': [...], ...}"):
+            raise ValueError(f"{name} must hold {', '.join(map(repr, SCENE))}, got no {key!r}; give all")
     for key in ("forces_at_m", "bodies_at_m"):
-        bridge.on_deck(f"panels[{title!r}][{key!r}]", scene[key])
-    check.number(f"panels[{title!r}]['added_mass_kg']", scene["added_mass_kg"], least=0, remedy="give kg, 0 for none")
+        along = check.numbers(f"{name}[{key!r}]", scene[key], ndim=1, remedy="give a list of x [m]")
+        bridge.on_deck(f"{name}[{key!r}]", along)
+    for key in ("forces_move", "bodies_move"):
+        check.instance(f"{name}[{key!r}]", scene[key], (bool, np.bool_), "give True or False")
+    check.number(f"{name}['added_mass_kg']", scene["added_mass_kg"], least=0, remedy="give kg, 0 for none")
     return scene

@@ -42,7 +42,7 @@ def spectrum_plot(
     Raises
     ------
     ValueError
-        If the response has several outputs or uneven times, or a mark is not above zero.
+        If the response has several outputs or uneven times, or marks are none or not above zero.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def spectrum_plot(
     ['amplitude', 'steps']
     """
     frequencies, amplitudes = amplitude_spectrum(one_output("response", response))
-    at = {label: _mark(label, given) for label, given in ({} if marks is None else marks).items()}
+    at = {} if marks is None else _marks(marks)
     ax = canvas.one_axes(ax)
     canvas.grid(ax)
     line, = ax.plot(frequencies, np.ravel(amplitudes), color=canvas.INK, linewidth=1.2, zorder=4, label="amplitude")
@@ -67,8 +67,15 @@ def spectrum_plot(
     return canvas.control_plot([[line, *lines]], np.array([[ax]]), [canvas.legend_above(ax, [[one] for one in lines])])
 
 
-def _mark(label: str, frequencies: ArrayLike) -> Array:
-    return np.atleast_1d(check.numbers(f"marks[{label!r}]", frequencies, above=0, remedy="give Hz"))
+def _marks(marks: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    check.instance("marks", marks, Mapping, "give {label: frequencies in Hz}")
+    return {label: _mark(f"marks[{label!r}]", given) for label, given in marks.items()}
+
+
+def _mark(name: str, frequencies: ArrayLike) -> Array:
+    remedy = "give Hz, one number or a list"
+    given = check.numbers(name, frequencies, above=0, count=1, remedy=remedy)
+    return check.numbers(name, np.atleast_1d(given), ndim=1, remedy=remedy)
 
 
 def _drawn(ax: Axes, index: int, label: str, frequencies: Array) -> Line2D:
