@@ -174,6 +174,7 @@ def _check_place(path: Path) -> None:
 def _check_content(path: Path) -> None:
     try:
         with closing(_connection(path)) as file:
+            file.execute("BEGIN")       # one look at all, while another process may be making it
             [mark], [form] = (file.execute(f"PRAGMA {name}").fetchone() for name in ("application_id", "user_version"))
             [tables] = file.execute("SELECT count(*) FROM sqlite_master").fetchone()
     except sqlite3.Error as error:
