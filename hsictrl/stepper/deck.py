@@ -114,18 +114,19 @@ class Deck:
             self.contacts.periods[1, seats] = tables.shape[1] - 4
 
     def _motions(self, stiffness: Array, damping: Array) -> Array:
-        return np.stack([motion(stiffness, damping, factor * self._step) for factor in (0.5, 1.0, 2.0)])
+        return motion(stiffness, damping, self._step * np.array([0.5, 1.0, 2.0]))
 
 
-def motion(stiffness: Array, damping: Array, time: float) -> Array:
-    """Exact motion of oscillators ẍ = −stiffness x − damping ẋ + n over some time, (7, n).
+def motion(stiffness: Array, damping: Array, times: Array) -> Array:
+    """Exact motion of oscillators ẍ = −stiffness x − damping ẋ + n over some times, (times, 7, n).
 
     Rows xx, xẋ, ẋx and ẋẋ of free motion, and the places to which forcings n = 1, τ and τ² take them from rest, τ
     being the part of the time that has gone by.
     """
-    kicks = _free(stiffness, damping, time * (1 - NODES)[:, None])[1]
-    forced = time * (WEIGHTS * NODES ** np.arange(3)[:, None]) @ kicks
-    return np.concatenate([_free(stiffness, damping, time), forced])
+    left = times[:, None, None] * np.append(1 - NODES, 1.0)[:, None]     # after a kick at each node, and at the start
+    free = _free(stiffness, damping, left)
+    forced = times[:, None, None] * ((WEIGHTS * NODES ** np.arange(3)[:, None]) @ free[1, :, :-1])
+    return np.concatenate([np.moveaxis(free[:, :, -1], 0, 1), forced], axis=1)
 
 
 def _free(stiffness: Array, damping: Array, time: Any) -> Array:

@@ -29,6 +29,8 @@ from hsictrl.walking.lines import spline
 
 # No fast mathematics: freely ordered sums are a fifth faster, but round differently in code from a cache.
 COMPILED: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+# What allocates nothing need not count references to arrays: half of the time of a step with ten people.
+BORROWING: dict[str, Any] = {**COMPILED, "_nrt": False}
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)      # unsigned, or every index is checked for its sign
 # values at 0, ½ and 1 of the quadratic q with given moments ∫ q τⁱ dτ over (0, 1), i = 0, 1, 2
@@ -108,7 +110,7 @@ def _field(nodes, orders, n_m, n):  # type: ignore[no-untyped-def]
                  np.zeros((nodes, n_m, n_m)))
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _copy(source, i, target, j):  # type: ignore[no-untyped-def]
     """Node i of a field becomes node j of another."""
     _, orders, n_m, n = source.rows.shape
@@ -138,13 +140,13 @@ def _events(paths):  # type: ignore[no-untyped-def]
     return Events(times[order], order % paths.shape[1])
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _within(events, t, h):  # type: ignore[no-untyped-def]
     """Events between t and t + h, both ends included: who comes at the end of a step is not there during the step."""
     return range(np.searchsorted(events.times, t), np.searchsorted(events.times, t + h, side="right"))
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _fill(t, h, length, contacts, events, field, work):  # type: ignore[no-untyped-def]
     """Participations and forces at nodes 1 to 4, half a step of h apart."""
     rows = field.rows
@@ -165,50 +167,49 @@ def _fill(t, h, length, contacts, events, field, work):  # type: ignore[no-untyp
             _shapes(t + h / 2 * i, i, k, k + 1, length, contacts, field, work)
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _shapes(t, node, first, last, length, contacts, field, work):  # type: ignore[no-untyped-def]
     """Participations of a range of slots at time t."""
-    rows, paths, points = field.rows, contacts.paths, contacts.shapes.shape[3]
-    _, orders, n_m, _ = rows.shape
-    tables = contacts.shapes.ravel()
+    rows, paths, tables = field.rows, contacts.paths, contacts.shapes
+    _, orders, n_m, points = tables.shape
     for k in range(first, last):
         place = min(max(paths[2, k] * (t - paths[0, k]) / length, 0.0), 1.0) * (points - 1)
         nearest = min(max(int(place), 1), points - 3)
         work.between[k] = place - nearest
-        work.knot[k] = nearest - 1 + k * orders * n_m * points
+        work.knot[k] = nearest - 1
     for order in range(orders):
         for j in range(n_m):
             for k in range(first, last):
-                i = np.uint64(work.knot[k] + (order * n_m + j) * points)
-                value = _cubic(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], work.between[k])
+                i, table = np.uint64(work.knot[k]), tables[k, order, j]
+                value = _cubic(table[i], table[i + ONE], table[i + TWO], table[i + THREE], work.between[k])
                 rows[node, order, j, k] = value if (t >= paths[0, k]) & (t <= paths[1, k]) else 0.0
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _forces(t, node, contacts, field, work):  # type: ignore[no-untyped-def]
     """Walking forces at time t, of those off the deck too."""
-    periods, tables, points = contacts.periods, contacts.combs.ravel(), contacts.combs.shape[1]
+    periods = contacts.periods
     for k in range(field.force.shape[1]):
         cycle = t * periods[0, k]
         place = (cycle - np.floor(cycle)) * periods[1, k]
         nearest = int(place)
         work.between[k] = place - nearest
-        work.knot[k] = nearest + k * points
+        work.knot[k] = nearest
     for k in range(field.force.shape[1]):
-        i = np.uint64(work.knot[k])
-        field.force[node, k] = _spline(tables[i], tables[i + ONE], tables[i + TWO], tables[i + THREE], work.between[k])
+        i, table = np.uint64(work.knot[k]), contacts.combs[k]
+        field.force[node, k] = _spline(table[i], table[i + ONE], table[i + TWO], table[i + THREE], work.between[k])
 
 
-_spline = njit(**COMPILED)(spline)
+_spline = njit(**BORROWING)(spline)
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _cubic(a, b, c, d, s):  # type: ignore[no-untyped-def]
     """The cubic through a, b, c and d at −1, 0, 1 and 2, at s."""
     return s * (s - 1) * ((s + 1) * d - (s - 2) * a) / 6 + (s + 1) * (s - 2) * ((s - 1) * b - s * c) / 2
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _shape(table, place):  # type: ignore[no-untyped-def]
     """A shape at a place in (0, 1) along the deck."""
     knot = place * (len(table) - 1)
@@ -216,7 +217,7 @@ def _shape(table, place):  # type: ignore[no-untyped-def]
     return _cubic(table[i - 1], table[i], table[i + 1], table[i + 2], knot - i)
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _sum(field, i, drive, now, contacts):  # type: ignore[no-untyped-def]
     """Modal forces and the factored mass matrix of node i, from its participations."""
     rows, root, unsprung = field.rows, field.root, contacts.bodies
@@ -235,7 +236,7 @@ def _sum(field, i, drive, now, contacts):  # type: ignore[no-untyped-def]
             root[i, p, q] = np.sqrt(total) if p == q else total / root[i, q, q]
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _go(t, h, first, stride, bridge, contacts, events, drive, now, field, kept,  # type: ignore[no-untyped-def]
         x, work, found, at):
     """Record the state at t and take a step of h, over nodes first, first + stride and first + 2 stride."""
@@ -256,32 +257,33 @@ def _go(t, h, first, stride, bridge, contacts, events, drive, now, field, kept, 
     _step(h, kept, 0, 1, stride, bridge, contacts, x, work)
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _smooth(t, h, k, length, contacts, rows):  # type: ignore[no-untyped-def]
     """Nodal values of slot k that keep the moments of its shapes over a step in which it steps on or off."""
     arrival, departure, speed = contacts.paths[0, k], contacts.paths[1, k], contacts.paths[2, k]
     start, half = max(t, arrival), (min(t + h, departure) - max(t, arrival)) / 2
-    moments = np.empty(3)
     for order in range(rows.shape[1]):
         for j in range(rows.shape[2]):
-            moments[:] = 0.0
+            zeroth = first = second = 0.0
             for i in range(len(NODES)):
                 at = start + half * (1 + NODES[i])
                 part = WEIGHTS[i] * half / h * _shape(contacts.shapes[k, order, j], speed * (at - arrival) / length)
-                for power in range(3):
-                    moments[power] += part * ((at - t) / h) ** power
+                zeroth += part
+                first += part * (at - t) / h
+                second += part * ((at - t) / h) ** 2
             for i in range(3):
-                rows[i, order, j, k] = np.dot(FROM_MOMENTS[i], moments)
+                of = FROM_MOMENTS[i]
+                rows[i, order, j, k] = of[0] * zeroth + of[1] * first + of[2] * second
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _keep(x, found, at):  # type: ignore[no-untyped-def]
     """Record displacements and velocities of the modes."""
     for j in range(found.shape[2]):
         found[at, 0, j], found[at, 1, j] = x[0, j], x[1, j]
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _record(field, i, bridge, contacts, x, work, found, at):  # type: ignore[no-untyped-def]
     """Record the state at node i, accelerations with it."""
     _keep(x, found, at)
@@ -290,7 +292,7 @@ def _record(field, i, bridge, contacts, x, work, found, at):  # type: ignore[no-
         found[at, 2, j] = work.acceleration[0, j]
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _step(h, field, first, stride, road, bridge, contacts, x, work):  # type: ignore[no-untyped-def]
     """One step, from the state x on, on the fine road (1) or the coarse one (2). Leaves z̈ at its beginning in `work`.
 
@@ -316,7 +318,7 @@ def _step(h, field, first, stride, road, bridge, contacts, x, work):  # type: ig
         x[1, k] = velocity + whole[1, k] * n[0, k] + whole[4, k] * (a / h) + whole[5, k] * (2 * b / h)
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _lean(time, over, x, first, middle, y):  # type: ignore[no-untyped-def]
     """The next stage y: under a forcing that goes linearly from its first value through the one in the middle."""
     for k in range(y.shape[1]):
@@ -327,7 +329,7 @@ def _lean(time, over, x, first, middle, y):  # type: ignore[no-untyped-def]
         y[1, k] = velocity + over[1, k] * first[k] + over[4, k] * (slope / time)
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _force(field, i, bridge, contacts, x, work, stage):  # type: ignore[no-untyped-def]
     """Modal accelerations at node i of a field, and the forcing n of modes and bodies that move alone otherwise."""
     rows, modes, bodies, n, found = field.rows[i], bridge.modes, contacts.bodies, work.n[stage], work.acceleration
@@ -357,7 +359,7 @@ def _force(field, i, bridge, contacts, x, work, stage):  # type: ignore[no-untyp
         n[j] = found[at, j] + modes[0, j] * x[0, j] + modes[1, j] * x[1, j]
 
 
-@njit(**COMPILED)
+@njit(**BORROWING)
 def _solve(root, i, b, at):  # type: ignore[no-untyped-def]
     """Solve for row `at` of b in place, with the Cholesky factor of node i."""
     n_m = b.shape[1]
