@@ -41,6 +41,23 @@ def numbers(
     return array
 
 
+def increasing(name: str, values: Any, *, remedy: str) -> Array:
+    """Return `values` as at least two numbers that increase; refuse anything else."""
+    array = numbers(name, values, ndim=1, count=2, remedy=remedy)
+    falls = np.flatnonzero(np.diff(array) <= 0)
+    if falls.size:
+        first = falls[0]
+        raise ValueError(f"{name} must increase, got {array[first]:g} and then {array[first + 1]:g}; {remedy}")
+    return array
+
+
+def known(name: str, values: Any, *, remedy: str) -> np.ma.MaskedArray:
+    """Return `values` as finite numbers, masked where they are nan; refuse anything else."""
+    array = _real(name, values, remedy)
+    unknown = np.isnan(array)
+    return np.ma.array(numbers(name, np.where(unknown, 0.0, array), remedy=remedy), mask=unknown)
+
+
 def even_times(name: str, values: Any) -> Array:
     """Return `values` as at least two times that increase evenly [s]; refuse anything else."""
     times = numbers(name, values, ndim=1, remedy="give an evenly spaced array of seconds")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain, product
 from string import ascii_lowercase
 from typing import Any, Literal
 
@@ -12,7 +13,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.legend import Legend
-from matplotlib.lines import Line2D
 
 from hsictrl import _checks as check
 
@@ -71,9 +71,18 @@ def several_axes(
     return np.array(axes, dtype=object).reshape(rows, columns)
 
 
+def rows(panels: int, columns: int) -> int:
+    """Number of rows that so many panels fill."""
+    check.whole("columns", columns, least=1, remedy="give the number of panels side by side")
+    if panels % columns:
+        raise ValueError(f"panels must fill their rows, got {panels} in {columns} columns; give a divisor of {panels}")
+    return panels // columns
+
+
 def head(axes: Iterable[Axes], titles: Iterable[str]) -> None:
     """Letter and title at the upper left of each panel, beside the legend."""
-    for ax, letter, title in zip(axes, ascii_lowercase, titles, strict=False):
+    letters = chain(ascii_lowercase, map("".join, product(ascii_lowercase, repeat=2)))
+    for ax, letter, title in zip(axes, letters, titles, strict=False):
         ax.set_title(f"({letter}) {title}", loc="left", fontsize="medium")
 
 
@@ -94,7 +103,7 @@ def grid(ax: Axes) -> None:
 
 
 def control_plot(
-    lines: Sequence[list[Line2D]], axes: np.ndarray, legends: Sequence[Legend | None],
+    lines: Sequence[Sequence[Artist]], axes: np.ndarray, legends: Sequence[Legend | None],
 ) -> ct.ControlPlot:
     """The host's container; its lines and legends have the shape of the axes, filled row by row."""
     held, legend = np.empty(axes.size, dtype=object), np.empty(axes.size, dtype=object)

@@ -62,7 +62,7 @@ def bars_plot(
     """
     names = _bars(panels)
     found = {title: _values(title, groups, names) for title, groups in panels.items()}
-    rows = _rows(len(found), columns)
+    rows = canvas.rows(len(found), columns)
     axes = canvas.several_axes(ax, rows, figsize=(4.0 * columns, 3.4 * rows), columns=columns, sharey=False)
     canvas.head(axes.flat, found)
     drawn = [_panel(one, groups, panels[title]) for one, (title, groups) in zip(axes.flat, found.items(), strict=True)]
@@ -99,13 +99,6 @@ def _legends(axes: np.ndarray, drawn: list[list[tuple[BarContainer, Line2D]]]) -
     legend = axes.flat[0].figure.legend(handles, [one.get_label() for one in handles], loc="outside upper center",
                                         ncols=len(handles), frameon=False, fontsize="small")
     return [legend, *[None] * (axes.size - 1)]
-
-
-def _rows(panels: int, columns: int) -> int:
-    check.whole("columns", columns, least=1, remedy="give the number of panels side by side")
-    if panels % columns:
-        raise ValueError(f"panels must fill their rows, got {panels} in {columns} columns; give a divisor of {panels}")
-    return panels // columns
 
 
 def _bars(panels: Mapping[str, Groups]) -> list[str]:

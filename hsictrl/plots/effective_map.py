@@ -18,6 +18,7 @@ from hsictrl._checks import Array
 from hsictrl.plots import _canvas as canvas
 
 BandAndMean = tuple[PolyCollection, Line2D]
+Found = dict[str, tuple[Array, Array]]      # by label
 
 
 def effective_map_plot(
@@ -55,8 +56,9 @@ def effective_map_plot(
     >>> [line.get_ydata().tolist() for line in plot.lines[:, 0][1]]     # ξ_eff [%]
     [[0.5, 1.2]]
     """
-    found, axes = _found(frequencies, {"": statistics}), canvas.several_axes(ax, 2, figsize=(8.0, 7.0))
-    return _maps(np.asarray(frequencies), list(found.values()), axes)
+    hertz = _hertz(frequencies)
+    found = _checked("statistics", statistics, len(hertz))
+    return _maps(hertz, [found], canvas.several_axes(ax, 2, figsize=(8.0, 7.0)))
 
 
 def effective_panels(
@@ -93,13 +95,14 @@ def effective_panels(
     >>> [ax.get_title("left") for ax in plot.axes[0]]
     ['(a) ξ_B = 0.2 %', '(b) ξ_B = 2 %']
     """
-    found = _found(frequencies, panels)
+    hertz, held = _hertz(frequencies), check.entries("panels", panels, "panel", "give {title: {label: {...}}}")
+    found = {title: _checked(f"panels[{title!r}]", each, len(hertz)) for title, each in held.items()}
     axes = canvas.several_axes(ax, 2, figsize=(4.0 * len(found), 7.0), columns=len(found))
     canvas.head(axes[0], found)
-    return _maps(np.asarray(frequencies), list(found.values()), axes)
+    return _maps(hertz, list(found.values()), axes)
 
 
-def _maps(hertz: Array, found: list[dict[str, tuple[Array, Array]]], axes: np.ndarray) -> ct.ControlPlot:
+def _maps(hertz: Array, found: list[Found], axes: np.ndarray) -> ct.ControlPlot:
     ratios = [_panel(ax, hertz, {label: one for label, (one, _) in each.items()})
               for ax, each in zip(axes[0], found, strict=True)]
     percents = [_panel(ax, hertz, {label: 100 * one for label, (_, one) in each.items()})
@@ -136,22 +139,21 @@ def _dark(index: int) -> tuple[float, ...]:
     return tuple(0.4 * part for part in to_rgb(canvas.colour(index)))
 
 
-def _found(
-    frequencies: ArrayLike, panels: Mapping[str, Mapping[str, Mapping[str, ArrayLike]]],
-) -> dict[str, dict[str, tuple[Array, Array]]]:
-    """The statistics of every panel and label, each checked."""
-    n = len(check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give f_B in Hz"))
-    if not panels or not all(panels.values()):
-        raise ValueError("statistics must hold at least one label, got none; give {label: {...}}")
-    return {title: {label: _checked(label, one, n) for label, one in each.items()} for title, each in panels.items()}
+def _hertz(frequencies: ArrayLike) -> Array:
+    return check.numbers("frequencies", frequencies, above=0, ndim=1, remedy="give f_B in Hz")
 
 
-def _checked(label: str, statistic: Mapping[str, ArrayLike], n: int) -> tuple[Array, Array]:
-    """Both quantities of one label, each of shape (3, n)."""
+def _checked(name: str, statistics: Mapping[str, Mapping[str, ArrayLike]], n: int) -> Found:
+    """Both quantities of every label, each of shape (3, n)."""
+    held = check.entries(name, statistics, "label", "give {label: {'frequency': ..., 'damping': ...}}")
+    return {label: _both(f"{name}[{label!r}]", one, n) for label, one in held.items()}
+
+
+def _both(name: str, statistic: Mapping[str, ArrayLike], n: int) -> tuple[Array, Array]:
+    check.instance(name, statistic, Mapping, "give {'frequency': ..., 'damping': ...}")
     for key in ("frequency", "damping"):
         if key not in statistic:
-            raise ValueError(f"statistics[{label!r}] must hold 'frequency' and 'damping', got no {key!r}; give both")
-    name = f"statistics[{label!r}]"
+            raise ValueError(f"{name} must hold 'frequency' and 'damping', got no {key!r}; give both")
     return (_three_rows(f"{name}['frequency']", statistic["frequency"], n),
             _three_rows(f"{name}['damping']", statistic["damping"], n))
 
