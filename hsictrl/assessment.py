@@ -15,6 +15,7 @@ from hsictrl.comfort import DesignResponse, comfort_class, design_acceleration
 from hsictrl.coupling import couple
 from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import MODELS, Prediction, predict, predict_tuned, tune
+from hsictrl.prediction.refusals import check_vertical
 from hsictrl.resonance import effective
 from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
@@ -366,9 +367,7 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
         raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
                          "give a higher one")
     check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
-    if not bridge.moves_vertically(0):
-        raise ValueError("the first mode must move vertically, got a shape that does not at its antinode; "
-                         "describe the bridge with a vertical mode first")
+    check_vertical(bridge)
     guide_value(bridge, flow)
 
 

@@ -204,7 +204,7 @@ LATERAL = Footbridge(modes=[SWAY], length=50.0, width=3.0, mass=50e3)
     (BRIDGE, CrowdFlow(density=2.0), r"density must lie in \(0, 1.5\], got 2; beyond 1.5 persons/m² walking"),
     (reference_bridge(damping=0.0), FLOW, r"damping\[0\] must lie in \(0, 1\), got 0; nothing settles"),
     (BRIDGE, CrowdFlow(density=0.001), r"density must put at least one person on the deck of 150 m², got 0.001"),
-    (LATERAL, FLOW, "the first mode must move vertically, got a shape that does not at its antinode; describe"),
+    (LATERAL, FLOW, "the first mode must move vertically, got a shape that does not at its antinode; walking"),
     (BRIDGE, CrowdFlow(persons=900), r"density must lie in \(0, 1.5\], got 6; beyond 1.5 persons/m²"),
 ])
 def test_what_the_guide_refuses_is_refused_before_the_first_trial(monkeypatch, bridge, flow, message):

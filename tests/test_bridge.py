@@ -85,6 +85,14 @@ def test_off_the_deck_nothing_takes_part(place):
     np.testing.assert_array_equal(three_modes().participation([place]), 0)
 
 
+def test_offsets_are_carried_up_to_the_edges_wherever_along_the_deck():
+    bridge, offsets = three_modes(), [-1.6, -1.5, 0.0, 1.5, 1.6]
+    np.testing.assert_array_equal(bridge.carries_across(offsets), [False, True, True, True, False])
+    for x in (0.0, 20.0, 50.0):
+        np.testing.assert_array_equal(bridge.carries_across(offsets), bridge.carries([[x, y] for y in offsets]))
+    assert bridge.carries_across([]).shape == (0,)
+
+
 def test_directions_take_part_in_their_own_modes():
     vertical = hsi.Mode(frequency=2, damping=0.01, modal_mass=25e3, shape=hsi.SineShape(50.0))
     lateral = hsi.Mode(frequency=1, damping=0.01, modal_mass=16e3, shape=hsi.SineShape(50.0, direction="lateral"))
@@ -197,6 +205,8 @@ DECK = {"length": 50.0, "width": 3.0, "mass": 50e3}
      r"at must have shape \(n,\) or \(n, 2\), got \(1, 3\)"),
     (lambda: three_modes().ss(at=[]), ValueError, r"at must hold at least 1 place\(s\), got 0; give x"),
     (lambda: three_modes().ss(at=[np.nan]), ValueError, r"at\[0\] must be finite, got nan; give x"),
+    (lambda: three_modes().carries_across([[25.0, 1.0]]), ValueError,
+     r"offsets must have 1 dimension\(s\), got shape \(1, 2\); give one place y in m per walker"),
     (lambda: three_modes().participation([25.0], "up"), ValueError, "direction must be .* got 'up'; choose one of"),
 ])
 def test_refusals(make, error, message):

@@ -232,6 +232,26 @@ class Footbridge:
         x, y = check.points("positions", positions).T
         return np.asarray((x >= 0) & (x <= self.length) & (np.abs(y) <= self.width / 2))
 
+    def carries_across(self, offsets: Any) -> NDArray[np.bool_]:
+        """Which offsets from the centre line lie on the deck, so that a walker who keeps one is on it all along.
+
+        Parameters
+        ----------
+        offsets : array_like, shape (n,)
+            Places y across the deck [m].
+
+        Returns
+        -------
+        array of bool, shape (n,)
+
+        Examples
+        --------
+        >>> reference_bridge(frequency=2.0).carries_across([-1.0, 2.0])      # 3 m wide
+        array([ True, False])
+        """
+        y = check.numbers("offsets", offsets, ndim=1, remedy="give one place y in m per walker")
+        return self.carries(np.column_stack([np.zeros_like(y), y]))
+
     def on_deck(self, name: str, positions: Any) -> Array:
         """Places on the deck as (n, 2) coordinates; refuse any that lie off it.
 

@@ -254,8 +254,7 @@ class Traffic:
         """
         check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
-        across = np.column_stack([np.zeros(len(self.walkers)), self.walkers.offset])
-        walkers = self.walkers.part(bridge.carries(across))
+        walkers = self.walkers.part(bridge.carries_across(self.walkers.offset))
         left = np.searchsorted(np.sort(walkers.arrival + bridge.length / walkers.speed), times, side="left")
         return np.searchsorted(np.sort(walkers.arrival), times, side="right") - left
 

@@ -16,9 +16,10 @@ from hsictrl.crowd import Traffic
 from hsictrl.paper.cells import CELLS, DEFAULT, DENSITIES, FREQUENCIES, SPREADS, Cell
 from hsictrl.paper.intervals import Interval, percentile, ratio
 from hsictrl.paper.reports import Report, Rows, committed
+from hsictrl.paper.studies import study_each
 from hsictrl.paper.table2 import cell_of
 from hsictrl.prediction import predict_tuned
-from hsictrl.study import Ensemble, PercentileRule, monte_carlo
+from hsictrl.study import Ensemble, PercentileRule
 from hsictrl.walking import WalkingForce, YoungForce, ZivanovicForce
 
 FORCES: dict[str, WalkingForce] = {
@@ -75,12 +76,8 @@ def report(recompute: bool, executor: Executor | None) -> Report:
 
 def study(cells: Sequence[Cell], executor: Executor | None = None, *, max_trials: int = MAX_TRIALS) -> Rows:
     """Run the trials of some cells."""
-    rows: Rows = []
-    for cell in cells:
-        ensemble = monte_carlo(ForcesTrial(cell=cell), rule=RULE, seed=SEED, executor=executor,
-                               max_trials=max_trials, label=f"fig8, {cell}")
-        rows.extend(_rows(cell, ensemble))
-    return rows
+    return study_each(cells, lambda cell: ForcesTrial(cell=cell), _rows, label="fig8, {}", rule=RULE, seed=SEED,
+                      executor=executor, max_trials=max_trials)
 
 
 def _rows(cell: Cell, ensemble: Ensemble) -> Rows:

@@ -14,8 +14,9 @@ from hsictrl.bridge import Footbridge
 from hsictrl.crowd import CrowdFlow, weidmann_speed
 from hsictrl.paper.intervals import RULE, percentile, ratio
 from hsictrl.paper.reports import Report, Rows, committed, rounded
+from hsictrl.paper.studies import study_each
 from hsictrl.prediction import Prediction, predict
-from hsictrl.study import Ensemble, monte_carlo
+from hsictrl.study import Ensemble
 from hsictrl.walking import ZivanovicForce
 
 LENGTHS = (50.0, 100.0, 200.0, 400.0)
@@ -81,14 +82,14 @@ def report(recompute: bool, executor: Executor | None) -> Report:
 
 def study(lengths: Sequence[float], executor: Executor | None = None, *, max_trials: int = MAX_TRIALS) -> Rows:
     """Run the trials of some spans."""
-    return [_row(length, monte_carlo(
-        LoadCyclesTrial(length=length), rule=RULE, seed=SEED, executor=executor, max_trials=max_trials,
-        label=f"load cycles, {length:g} m")) for length in lengths]
+    return study_each(lengths, lambda length: LoadCyclesTrial(length=length), _rows, label="load cycles, {:g} m",
+                      rule=RULE, seed=SEED, executor=executor, max_trials=max_trials)
 
 
-def _row(length: float, ensemble: Ensemble) -> dict[str, float | bool]:
+def _rows(length: float, ensemble: Ensemble) -> Rows:
+    """One row."""
     stationary, moving, instant = ensemble.samples.T
-    return {"length_m": length, "load_cycles": rounded(length * FREQUENCY / SPEED),
+    return [{"length_m": length, "load_cycles": rounded(length * FREQUENCY / SPEED),
             **percentile(stationary).row("a95_sf", "_m_per_s2"), **percentile(moving).row("a95_mf", "_m_per_s2"),
             **ratio(stationary, moving).row("sf_over_mf"), **ratio(stationary, instant).row("sf_over_instant"),
-            "trials": ensemble.n_trials, "settled": ensemble.converged}
+            "trials": ensemble.n_trials, "settled": ensemble.converged}]

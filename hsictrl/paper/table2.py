@@ -8,8 +8,9 @@ from concurrent.futures import Executor
 from hsictrl.paper.cells import CELLS, DEFAULT, FREQUENCIES, SPREADS, Cell, SharedTrafficTrial
 from hsictrl.paper.intervals import RESAMPLES, RULE, Interval, percentile, ratio
 from hsictrl.paper.reports import Report, Rows, committed, rounded
+from hsictrl.paper.studies import study_each
 from hsictrl.prediction import ASSUMPTIONS, MODELS
-from hsictrl.study import Ensemble, monte_carlo
+from hsictrl.study import Ensemble
 
 SEED, MAX_TRIALS = 2, 3000
 # Δa95 [%] by density and model, f_B = 2.00, 3.25, 5.00 Hz of case 1 and then of case 2
@@ -42,12 +43,8 @@ def report(recompute: bool, executor: Executor | None) -> Report:
 
 def study(cells: Sequence[Cell], executor: Executor | None = None, *, max_trials: int = MAX_TRIALS) -> Rows:
     """Run the trials of some cells."""
-    rows: Rows = []
-    for cell in cells:
-        ensemble = monte_carlo(SharedTrafficTrial(cell=cell), rule=RULE, seed=SEED, executor=executor,
-                               max_trials=max_trials, label=f"table2, {cell}")
-        rows.extend(_rows(cell, ensemble))
-    return rows
+    return study_each(cells, lambda cell: SharedTrafficTrial(cell=cell), _rows, label="table2, {}", rule=RULE,
+                      seed=SEED, executor=executor, max_trials=max_trials)
 
 
 def _rows(cell: Cell, ensemble: Ensemble) -> Rows:

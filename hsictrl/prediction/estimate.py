@@ -16,6 +16,7 @@ from hsictrl.crowd import CrowdFlow
 from hsictrl.crowd.average import mean_crowd
 from hsictrl.crowd.traffic import step_remarks
 from hsictrl.prediction.extremes import envelope_correlation, independent_peaks, peak_factor
+from hsictrl.prediction.refusals import check_vertical
 from hsictrl.prediction.shotnoise import Band, Complex, StepRule, mean_square_lines, modal_spectrum
 from hsictrl.resonance.effective import effective
 from hsictrl.walking import WalkingForce, ZivanovicForce
@@ -165,9 +166,7 @@ def _checked(model: str, bridge: Any, flow: Any, force: WalkingForce | None) -> 
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
     check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
-    if not bridge.moves_vertically(0):
-        raise ValueError("the first mode must move vertically, got a shape that does not at its antinode; walking "
-                         "forces are vertical, so describe the bridge with a vertical mode first")
+    check_vertical(bridge)
     if not flow.persons_on(bridge):
         raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
                          "give a higher one")

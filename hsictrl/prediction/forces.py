@@ -50,7 +50,7 @@ def _add(
     x = speed[:, None] * (time - arrival[:, None])
     sample = force.on_grid(grid.first + grid.step * first, count, grid.step)
     start, stop = np.clip(-first, 0, count), np.clip(grid.count - first, 0, count)
-    on_deck = np.flatnonzero((start < stop) & bridge.carries(np.column_stack([np.zeros_like(y), y])))
+    on_deck = np.flatnonzero((start < stop) & bridge.carries_across(y))
     for modal, mode in zip(total, bridge.modes, strict=True):
         share = mode.shape(x, y[:, None], "vertical")
         share *= sample

@@ -15,6 +15,7 @@ from hsictrl.coupling import MovingCrowd, OccupiedBridge, couple, moving_crowd
 from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency, settling_time
 from hsictrl.prediction.forces import Lines, modal_force
 from hsictrl.prediction.grid import Grid
+from hsictrl.prediction.refusals import check_vertical
 from hsictrl.prediction.spectral import accelerations
 from hsictrl.prediction.steady import steady_accelerations
 from hsictrl.resonance import EffectiveProperties, effective
@@ -264,9 +265,7 @@ def _system(model: str, bridge: Footbridge, traffic: Traffic, sense_at: Any) -> 
     check.choice("model", model, MODELS)
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
-    if not bridge.moves_vertically(0):
-        raise ValueError("the first mode must move vertically, got a shape that does not at its antinode; walking "
-                         "forces are vertical, so describe the bridge with a vertical mode first")
+    check_vertical(bridge)
     deck, people, places = _carrier(model, bridge, traffic)
     return couple(deck, people, places, sense_at=sense_at, name=model)
 

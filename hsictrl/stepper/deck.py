@@ -41,7 +41,7 @@ class Deck:
         walkers = crowd.traffic.walkers
         self._crowd, self._step = crowd, step
         self._finer = 1 << min(max(0, int(np.log2(TABLES_SUFFICE / step))), FINEST)
-        self._walkers = walkers.part(crowd.bridge.carries(np.column_stack([0 * walkers.offset, walkers.offset])))
+        self._walkers = walkers.part(crowd.bridge.carries_across(walkers.offset))
         lateral = self._walkers.bodies.direction != "vertical"
         self._who = np.concatenate([np.arange(len(lateral)), np.flatnonzero(lateral)])
         self._embodied = np.arange(len(self._who)) < len(lateral)
