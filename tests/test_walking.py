@@ -399,3 +399,23 @@ def test_the_interface_cannot_be_instantiated():
 def test_refusals(call, message):
     with pytest.raises((TypeError, ValueError), match=message):
         call()
+
+
+# parts
+
+def test_the_narrow_band_by_its_printed_formulas():
+    """Amplitude W DLF D̄(f) of the line at the middle of main 1 and of sub 2, with median load factors."""
+    force = one(ZivanovicForce(), f_s=1.8, weight=700.0, draw=0.5)
+    amplitude = dict(zip(force.indices * 0.01, np.abs(force.coefficients[0]), strict=True))
+    kerr = -0.2649 * 1.8**3 + 1.3206 * 1.8**2 - 1.7597 * 1.8 + 0.7613
+    main = (0.7852 * np.exp(-((1 - 0.9999) / 0.008314)**2) + 0.0206 * np.exp(-((1 - 1.034) / 0.2524)**2)
+            + 0.1074 * np.exp(-((1 - 1.001) / 0.03653)**2))
+    sub = 0.3024 * np.exp(-((1.5 - 1.5) / 0.008735)**2) + 0.1345 * np.exp(-((1.5 - 1.532) / 0.7233)**2)
+    assert amplitude[1.0] == pytest.approx(700 * kerr * main, rel=1e-9)
+    assert amplitude[1.5] == pytest.approx(700 * (0.074 * kerr + 0.0100) * sub, rel=1e-9)
+
+
+@pytest.mark.parametrize("f_s", [1.0, 2.0])
+def test_parts_refuse_frequencies_of_others(f_s):
+    with pytest.raises(ValueError, match=r"step_frequency must have shape \(1,\), got \(2,\); give one per walker"):
+        YoungForce().parts([700.0], np.full((1, 4), 0.5)).at([f_s, f_s])

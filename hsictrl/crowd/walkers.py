@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.pedestrian import Crowd, Pedestrian
-from hsictrl.walking import ForceLines, WalkingForce
+from hsictrl.walking import ForceLines, ForceParts, WalkingForce
 
 BY_HAND: dict[str, Any] = {
     "least": 0.5, "most": 3.5, "remedy": "people step at 0.5 to 3.5 Hz; give f_s, not a bridge frequency"}
@@ -315,8 +315,26 @@ class Walkers:
         >>> who, force.n_walkers
         (array([0, 1]), 2)
         """
+        return [(who, parts.at(self.step_frequency[who])) for who, parts in self.parts()]
+
+    def parts(self) -> list[tuple[Indices, ForceParts]]:
+        """What the walking forces are made of at any step frequencies, model by model.
+
+        Returns
+        -------
+        list of (array of int, ForceParts)
+            Indices of the walkers who share a model [-], and the parts of their forces [N].
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+        >>> [(who, parts)] = Walkers.of([walker]).parts()
+        >>> parts.at([1.8]).frequencies
+        array([[1.8]])
+        """
         members = [np.flatnonzero(self.model == i) for i in range(len(self.forces))]
-        return [(who, force.lines(self.step_frequency[who], self.weight[who], draws))
+        return [(who, force.parts(self.weight[who], draws))
                 for who, force, draws in zip(members, self.forces, self.draws, strict=True) if len(who)]
 
     def _row_in_model(self) -> Indices:

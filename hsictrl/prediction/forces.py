@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +12,14 @@ from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.crowd import Walkers
 from hsictrl.prediction.grid import Grid
-from hsictrl.walking import ForceLines
+from hsictrl.walking import ForceLines, ForceParts
+from hsictrl.walking.lines import WALKERS_AT_ONCE, Complex, tabulated
 
-Lines = list[tuple[NDArray[np.intp], ForceLines]]
+SHAPES_AT_ONCE = 64     # walkers
+
+Indices = NDArray[np.intp]
+Lines = list[tuple[Indices, ForceLines]]
+Parts = list[tuple[Indices, ForceParts]]
 
 
 def modal_force(bridge: Footbridge, walkers: Walkers, lines: Lines, grid: Grid) -> Array:
@@ -33,27 +41,74 @@ def modal_force(bridge: Footbridge, walkers: Walkers, lines: Lines, grid: Grid) 
     array, shape (n_m, count)
         Modal forces in mass-normalised coordinates [N/√kg].
     """
-    total = np.zeros((bridge.n_modes, grid.count))
+    total = np.zeros((1, bridge.n_modes, grid.count))
     for who, force in lines:
-        _add(total, bridge, walkers, who, force, grid)
+        _add(total, bridge, walkers, who, (force.spacing * force.step_frequency)[None], np.ones((1, 1, len(who))),
+             partial(_tables, force.coefficients[None], force.indices), grid)
+    return total[0] * grid.taper
+
+
+def modal_forces(bridge: Footbridge, walkers: Walkers, parts: Parts, step_frequencies: Array, grid: Grid) -> Array:
+    """Modal forces of walkers who step at several frequencies, as `modal_force` gives them one by one.
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The bridge.
+    walkers : Walkers
+        Who walks, where and when; their step frequencies do not matter.
+    parts : list of (array of int, ForceParts)
+        What their forces are made of, ``walkers.parts()`` [N].
+    step_frequencies : array, shape (u, n)
+        Step frequencies of all walkers, u times [Hz].
+    grid : Grid
+        Times [s].
+
+    Returns
+    -------
+    array, shape (u, n_m, count)
+        Modal forces in mass-normalised coordinates [N/√kg].
+    """
+    if len(step_frequencies) == 1:      # one table per walker instead of one per part
+        return modal_force(bridge, walkers, [(who, one.at(step_frequencies[0, who])) for who, one in parts], grid)[None]
+    total = np.zeros((len(step_frequencies), bridge.n_modes, grid.count))
+    for who, force in parts:
+        frequencies = step_frequencies[:, who]
+        factors = np.stack([force.factors(one) for one in frequencies])
+        _add(total, bridge, walkers, who, force.spacing * frequencies, factors,
+             partial(_tables, force.coefficients, force.indices), grid)
     return total * grid.taper
 
 
 def _add(
-    total: Array, bridge: Footbridge, walkers: Walkers, who: NDArray[np.intp], force: ForceLines, grid: Grid,
+    total: Array, bridge: Footbridge, walkers: Walkers, who: Indices, periods: Array, factors: Array,
+    tables: Callable[[Indices], Array], grid: Grid,
 ) -> None:
-    """Add the walkers of one force model, each over the samples of their own crossing."""
-    arrival, speed, y = walkers.arrival[who], walkers.speed[who], walkers.offset[who]
-    first = np.ceil((arrival - grid.first) / grid.step).astype(np.intp)
-    count = int(np.ceil(bridge.length / speed.min() / grid.step))
-    time = grid.first + grid.step * (first[:, None] + np.arange(count))
-    x = speed[:, None] * (time - arrival[:, None])
-    sample = force.on_grid(grid.first + grid.step * first, count, grid.step)
-    start, stop = np.clip(-first, 0, count), np.clip(grid.count - first, 0, count)
-    on_deck = np.flatnonzero((start < stop) & bridge.carries_across(y))
-    for modal, mode in zip(total, bridge.modes, strict=True):
-        share = mode.shape(x, y[:, None], "vertical")
-        share *= sample
-        share /= np.sqrt(mode.modal_mass)
-        for k in on_deck:
-            modal[first[k] + start[k]:first[k] + stop[k]] += share[k, start[k]:stop[k]]
+    """Add the walkers of one force model, some at a time: shapes and tables stay in cache."""
+    from hsictrl.prediction.deposit import deposit  # only now: it loads the compiler
+
+    first = np.ceil((walkers.arrival[who] - grid.first) / grid.step).astype(np.intp)
+    count = int(np.ceil(bridge.length / walkers.speed[who].min() / grid.step))
+    present = np.flatnonzero((first > -count) & (first < grid.count) & bridge.carries_across(walkers.offset[who]))
+    for rows in _blocks(present, SHAPES_AT_ONCE):
+        begin = grid.first + grid.step * first[rows]
+        shapes = _shapes(bridge, walkers, who[rows], begin[:, None] + grid.step * np.arange(count))
+        for part in _blocks(np.arange(len(rows)), WALKERS_AT_ONCE):
+            chosen = rows[part]
+            deposit(total, first[chosen], *map(np.ascontiguousarray, (
+                shapes[:, part], tables(chosen), factors[:, :, chosen], begin[part] * periods[:, chosen],
+                grid.step * periods[:, chosen])))
+
+
+def _tables(coefficients: Complex, lines: Indices, rows: Indices) -> Array:
+    return tabulated(coefficients[:, rows], lines)
+
+
+def _blocks(indices: Indices, size: int) -> list[Indices]:
+    return [indices[start:start + size] for start in range(0, len(indices), size)]
+
+
+def _shapes(bridge: Footbridge, walkers: Walkers, who: Indices, times: Array) -> Array:
+    """Mass-normalised modes under some walkers, each at times of its own, shape (n_m, n, m) [1/√kg]."""
+    x, y = walkers.speed[who, None] * (times - walkers.arrival[who, None]), walkers.offset[who, None]
+    return np.stack([mode.shape(x, y, "vertical") / np.sqrt(mode.modal_mass) for mode in bridge.modes])

@@ -105,3 +105,13 @@ class Grid:
 def _limit(highest_force: float, highest_mode: float) -> float:
     """Longest step that resolves forces and modes [s]."""
     return 1 / max(FORCE_MARGIN * highest_force, MODE_MARGIN * highest_mode, 1 / LONGEST_STEP)
+
+
+def largest(signal: Array) -> float:
+    """Largest absolute value of a sampled signal, at the vertex of the parabola about its largest sample."""
+    i = int(np.argmax(np.abs(signal)))
+    if i in (0, len(signal) - 1):    # the parabola would tell of times that were not asked for
+        return float(abs(signal[i]))
+    left, top, right = signal[i - 1:i + 2] * np.sign(signal[i])
+    bend = left - 2 * top + right
+    return float(top - (left - right)**2 / (8 * bend) if bend < 0 else top)

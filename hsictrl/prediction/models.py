@@ -14,7 +14,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, couple, moving_crowd
 from hsictrl.crowd import Traffic, Walkers, resonant_step_frequency, settling_time
 from hsictrl.prediction.forces import Lines, modal_force
-from hsictrl.prediction.grid import Grid
+from hsictrl.prediction.grid import Grid, largest
 from hsictrl.prediction.refusals import check_vertical
 from hsictrl.prediction.spectral import accelerations
 from hsictrl.prediction.steady import steady_accelerations
@@ -71,7 +71,7 @@ class Prediction:
     @property
     def peak_acceleration(self) -> float:
         """Largest absolute acceleration, at the point where it is largest; read between the samples [m/s²]."""
-        return max(_peak(signal) for signal in self.response.y.reshape(-1, self.response.y.shape[-1]))
+        return max(largest(signal) for signal in self.response.y.reshape(-1, self.response.y.shape[-1]))
 
 
 def predict(
@@ -171,10 +171,10 @@ def _predicted(
     if system.name == "SF":
         return _steady(system, traffic, window, times)
     decay = _slowest_decay(system, found)
-    relevant = _relevant(traffic, system.bridge, decay, window, warm_up)
+    traffic = relevant(traffic, system.bridge, decay, window, warm_up)
     if system.name == "MC":
-        return _stepped(system, relevant, times)
-    return _moving(system, relevant, window, times, decay)
+        return _stepped(system, traffic, times)
+    return _moving(system, traffic, window, times, decay)
 
 
 def _stepped(system: OccupiedBridge, traffic: Traffic, times: Array | None) -> Prediction:
@@ -286,7 +286,7 @@ def _within(traffic: Traffic, window: tuple[float, float], times: Array) -> Arra
     return times
 
 
-def _relevant(
+def relevant(
     traffic: Traffic, bridge: Footbridge, decay: float, window: tuple[float, float], warm_up: float | None,
 ) -> Traffic:
     """Walkers who arrive from one crossing and the warm-up before the window on; all of those made by hand."""
@@ -328,13 +328,3 @@ def _grid(
                max(mode.frequency for mode in bridge.modes))
     start = float(np.min(walkers.arrival, initial=window[0]))
     return Grid.over(window, start, *highest) if times is None else Grid.at(times, start, *highest)
-
-
-def _peak(signal: Array) -> float:
-    """Largest absolute value of a sampled signal, at the vertex of the parabola about its largest sample."""
-    i = int(np.argmax(np.abs(signal)))
-    if i in (0, len(signal) - 1):    # the parabola would tell of times that were not asked for
-        return float(abs(signal[i]))
-    left, top, right = signal[i - 1:i + 2] * np.sign(signal[i])
-    bend = left - 2 * top + right
-    return float(top - (left - right)**2 / (8 * bend) if bend < 0 else top)

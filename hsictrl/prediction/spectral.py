@@ -31,13 +31,13 @@ def accelerations(system: OccupiedBridge, force: Array, grid: Grid, decay: float
     array, shape (p, m)
         At the times of the grid, at `system.sense_at` [m/s²].
     """
-    n, growth = _period(grid, decay)
+    n, growth = period(grid, decay)
     spectrum = np.fft.rfft(force * np.exp(-growth * grid.step * np.arange(grid.count)), n)
     s = np.asarray(growth + 2j * np.pi * np.fft.rfftfreq(n, grid.step), dtype=np.complex128)
     return grid.read(system.respond(s, spectrum), growth)
 
 
-def _period(grid: Grid, decay: float) -> tuple[int, float]:
+def period(grid: Grid, decay: float) -> tuple[int, float]:
     """Samples in a period, and rate of an exponential, such that the end of a response dies before it comes round.
 
     The vibration's own decay does that, if the period is long enough. Where it would have to be longer than

@@ -3,8 +3,10 @@
 from hsictrl.walking.lines import ForceLines
 from hsictrl.walking.model import WalkingForce
 from hsictrl.walking.narrowband import MainHarmonics, ZivanovicForce, kerr_factor
+from hsictrl.walking.parts import ForceParts
 from hsictrl.walking.periodic import HarmonicForce, YoungForce
 
 __all__ = [
-    "ForceLines", "HarmonicForce", "MainHarmonics", "WalkingForce", "YoungForce", "ZivanovicForce", "kerr_factor",
+    "ForceLines", "ForceParts", "HarmonicForce", "MainHarmonics", "WalkingForce", "YoungForce", "ZivanovicForce",
+    "kerr_factor",
 ]

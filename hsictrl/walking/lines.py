@@ -8,6 +8,7 @@ from typing import Any, final
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike, NDArray
+from scipy.fft import irfft
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -17,7 +18,7 @@ Whole = NDArray[np.intp]
 
 OVERSAMPLING = 14       # fewest table points per period of the highest line, for an error of 2e-5
 SMALLEST_TABLE = 1024   # few-line models reach 1e-10 at hardly any cost
-WALKERS_AT_ONCE = 6     # tables and samples of so many walkers stay in cache
+WALKERS_AT_ONCE = 8     # tables and samples of so many walkers stay in cache
 
 
 @final
@@ -79,7 +80,7 @@ class ForceLines:
         >>> ForceLines(coefficients=[[301.0, 56.0]], first=1, spacing=1.0, step_frequency=[2.0]).frequencies
         array([[2., 4.]])
         """
-        return np.multiply.outer(self.step_frequency, self.spacing * self._indices)
+        return np.multiply.outer(self.step_frequency, self.spacing * self.indices)
 
     @property
     def highest_frequency(self) -> float:
@@ -157,7 +158,7 @@ class ForceLines:
         periods = self.spacing * self.step_frequency
         for block in _blocks(self.n_walkers):
             cycles = (starts[block, np.newaxis] + offsets * step) * periods[block, np.newaxis]
-            samples[block] = _read(_tables(self.coefficients[block], self._indices), cycles)
+            samples[block] = _read(tabulated(self.coefficients[block], self.indices), cycles)
         return samples
 
     def tables(self, finer: int = 1) -> Array:
@@ -182,22 +183,29 @@ class ForceLines:
         >>> table.shape, float((table[0, 0] + 4 * table[0, 1] + table[0, 2]).round(6))    # F(0)
         ((1, 1028), 301.0)
         """
-        return _tables(self.coefficients, self._indices, check.whole("finer", finer, least=1, remedy="give 1, 2, …"))
+        return tabulated(self.coefficients, self.indices, check.whole("finer", finer, least=1, remedy="give 1, 2, …"))
 
     @property
-    def _indices(self) -> Whole:
+    def indices(self) -> Whole:
+        """Indices l of the lines, shape (L,) [-].
+
+        Examples
+        --------
+        >>> ForceLines(coefficients=[[301.0, 56.0]], first=1, spacing=1.0, step_frequency=[2.0]).indices
+        array([1, 2])
+        """
         return np.arange(self.first, self.first + self.coefficients.shape[1])
 
 
-def _tables(coefficients: Complex, lines: Whole, finer: int = 1) -> Array:
-    """B-spline coefficients over 6 of one period of the comb, continued by 1 and 3 points, (n, size + 4)."""
+def tabulated(coefficients: Complex, lines: Whole, finer: int = 1) -> Array:
+    """B-spline coefficients over 6 of one period of combs (…, L), continued by 1 and 3 points, (…, size + 4)."""
     size = finer * max(SMALLEST_TABLE, 1 << int(OVERSAMPLING * lines[-1] - 1).bit_length())
-    spectrum = np.zeros((len(coefficients), lines[-1] + 1), dtype=complex)
-    np.multiply(coefficients, 1 / (12 * np.sinc(lines / size) ** 4), out=spectrum[:, lines[0]:])
-    table = np.empty((len(coefficients), size + 4))
-    np.fft.irfft(spectrum, size, norm="forward", out=table[:, 1:-3])
-    table[:, 0] = table[:, -4]
-    table[:, -3:] = table[:, 1:4]
+    spectrum = np.zeros((*coefficients.shape[:-1], size // 2 + 1), dtype=complex)
+    np.multiply(coefficients, 1 / (12 * np.sinc(lines / size) ** 4), out=spectrum[..., lines[0]:lines[-1] + 1])
+    table = np.empty((*coefficients.shape[:-1], size + 4))
+    table[..., 1:-3] = irfft(spectrum, size, norm="forward")      # of scipy, which transforms several at once
+    table[..., 0] = table[..., -4]
+    table[..., -3:] = table[..., 1:4]
     return table
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.walking.lines import Complex, ForceLines, shaped
+from hsictrl.walking.parts import ForceParts
 
 
 class WalkingForce(ABC):
@@ -47,6 +48,29 @@ class WalkingForce(ABC):
         """
 
     @abstractmethod
+    def parts(self, weight: ArrayLike, draws: ArrayLike) -> ForceParts:
+        """Give what the forces of n walkers are made of, at any step frequencies.
+
+        Parameters
+        ----------
+        weight : array_like, shape (n,)
+            Weight of each walker [N].
+        draws : array_like, shape (n, n_draws)
+            Standard uniform numbers in [0, 1) [-].
+
+        Returns
+        -------
+        ForceParts
+            Combs of lines, and the factors by which a step frequency weighs them [N].
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from hsictrl.walking import HarmonicForce
+        >>> HarmonicForce([0.43]).parts([700.0], draws=np.empty((1, 0))).coefficients.real
+        array([[[301.]]])
+        """
+
     def lines(self, step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike) -> ForceLines:
         """Give the forces of n walkers.
 
@@ -72,6 +96,9 @@ class WalkingForce(ABC):
         >>> force.coefficients.real
         array([[301.]])
         """
+        f_s = check.numbers("step_frequency", step_frequency, above=0, ndim=1, remedy="give a list of Hz")
+        shaped("weight", check.numbers("weight", weight, remedy="give N"), f_s.shape, "give one per step frequency")
+        return self.parts(weight, draws).at(f_s)
 
     @abstractmethod
     def periodic(self) -> WalkingForce:
@@ -90,15 +117,11 @@ class WalkingForce(ABC):
         """
 
 
-def walkers(
-    step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike, n_draws: int,
-) -> tuple[Array, Array, Array]:
-    f_s = check.numbers("step_frequency", step_frequency, above=0, ndim=1, remedy="give a list of Hz")
-    W = check.numbers("weight", weight, above=0, remedy="give N")
+def walkers(weight: ArrayLike, draws: ArrayLike, n_draws: int) -> tuple[Array, Array]:
+    W = check.numbers("weight", weight, above=0, ndim=1, remedy="give N")
     u = check.numbers("draws", draws, least=0, below=1, remedy="draw them by rng.random((n, force.n_draws))")
-    shaped("weight", W, f_s.shape, "give one per step frequency")
-    shaped("draws", u, (*f_s.shape, n_draws), "give n_draws uniform numbers per walker")
-    return f_s, W, u
+    shaped("draws", u, (*W.shape, n_draws), "give n_draws uniform numbers per walker")
+    return W, u
 
 
 def phasors(draws: Array) -> Complex:

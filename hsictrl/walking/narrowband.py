@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._draws import truncated_normal
-from hsictrl.walking.lines import ForceLines
 from hsictrl.walking.model import WalkingForce, phasors, walkers
+from hsictrl.walking.parts import ForceParts
 
 # Živanović, Pavić & Reynolds (2007): (a, b, c) of the Gaussians about main harmonic i, sub-harmonic i − ½
 MAIN = (
@@ -115,13 +115,12 @@ class ZivanovicForce(WalkingForce):
     def n_draws(self) -> int:
         return len(FACTOR_MEAN) + _shapes(self.spacing, self.scaling).size
 
-    def lines(self, step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike) -> ForceLines:
-        f_s, W, draws = walkers(step_frequency, weight, draws, self.n_draws)
-        amplitudes = W[:, np.newaxis] * _load_factors(f_s, draws[:, :5])
-        coefficients = phasors(draws[:, 5:])
-        coefficients *= _spread(amplitudes, _shapes(self.spacing, self.scaling))
-        return ForceLines(coefficients=coefficients, first=round(0.25 / self.spacing),
-                          spacing=self.spacing, step_frequency=f_s)
+    def parts(self, weight: ArrayLike, draws: ArrayLike) -> ForceParts:
+        W, draws = walkers(weight, draws, self.n_draws)
+        amplitudes = W[:, np.newaxis] * _load_factors(draws[:, :5])
+        coefficients = phasors(draws[:, 5:]) * _spread(amplitudes, _shapes(self.spacing, self.scaling))
+        return ForceParts(coefficients=coefficients, first=round(0.25 / self.spacing), spacing=self.spacing,
+                          factors=_growth)
 
     def periodic(self) -> MainHarmonics:
         return MainHarmonics(self)
@@ -157,12 +156,11 @@ class MainHarmonics(WalkingForce):
     def n_draws(self) -> int:
         return self.narrow_band.n_draws
 
-    def lines(self, step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike) -> ForceLines:
-        f_s, W, draws = walkers(step_frequency, weight, draws, self.n_draws)
+    def parts(self, weight: ArrayLike, draws: ArrayLike) -> ForceParts:
+        W, draws = walkers(weight, draws, self.n_draws)
         centres = 5 + np.round((np.arange(1, 6) - 0.25) / self.narrow_band.spacing).astype(np.intp)
-        factors = _load_factors(f_s, draws[:, :5])[:, 1::2]
-        return ForceLines(coefficients=W[:, np.newaxis] * factors * phasors(draws[:, centres]),
-                          first=1, spacing=1.0, step_frequency=f_s)
+        amplitudes = W[:, np.newaxis] * _load_factors(draws[:, :5])[:, :, 1::2]
+        return ForceParts(coefficients=amplitudes * phasors(draws[:, centres]), first=1, spacing=1.0, factors=_growth)
 
     def periodic(self) -> MainHarmonics:
         return self
@@ -186,12 +184,19 @@ def _gaussians(f: Array, terms: tuple[tuple[float, float, float], ...]) -> Array
 
 
 def _spread(amplitudes: Array, shapes: Array) -> Array:
-    return (amplitudes[:, :, np.newaxis] * shapes).reshape(len(amplitudes), -1)
+    return (amplitudes[..., np.newaxis] * shapes).reshape(*amplitudes.shape[:-1], -1)
 
 
-def _load_factors(f_s: Array, draws: Array) -> Array:
-    """Load factors of sub 1, main 1, sub 2, …, shape (n, 10) [-]."""
+def _load_factors(draws: Array) -> Array:
+    """Load factors of sub 1, main 1, sub 2, …: what does not depend on the step frequency, and what grows by Kerr's
+    cubic, shape (2, n, 10) [-]."""
     main = truncated_normal(FACTOR_MEAN, FACTOR_STD, draws)
-    main[:, 0] *= kerr_factor(f_s)
-    sub = SUB_SLOPE * main[:, :1] + SUB_CONSTANT
-    return np.stack([sub, main], axis=2).reshape(-1, 10)
+    first = main[:, :1].copy()
+    main[:, 0] = 0.0
+    constant = np.stack([np.broadcast_to(SUB_CONSTANT, main.shape), main], axis=2)
+    growing = np.stack([SUB_SLOPE * first, first * np.eye(5)[0]], axis=2)
+    return np.stack([constant, growing]).reshape(2, -1, 10)
+
+
+def _growth(step_frequency: Array) -> Array:
+    return np.stack([np.ones(len(step_frequency)), kerr_factor(step_frequency)])

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hsictrl import _checks as check
-from hsictrl.walking.lines import ForceLines, shaped
+from hsictrl._checks import Array
+from hsictrl.walking.lines import shaped
 from hsictrl.walking.model import WalkingForce, phasors, walkers
+from hsictrl.walking.parts import ForceParts
 
 
 @final
@@ -50,10 +52,11 @@ class HarmonicForce(WalkingForce):
     def n_draws(self) -> int:
         return 0
 
-    def lines(self, step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike) -> ForceLines:
-        f_s, W, _ = walkers(step_frequency, weight, draws, self.n_draws)
+    def parts(self, weight: ArrayLike, draws: ArrayLike) -> ForceParts:
+        W, _ = walkers(weight, draws, self.n_draws)
         coefficients = np.multiply.outer(W, self.factors * np.exp(1j * np.asarray(self.phases)))
-        return ForceLines(coefficients=coefficients, first=1, spacing=1.0, step_frequency=f_s)
+        return ForceParts(coefficients=coefficients[np.newaxis], first=1, spacing=1.0,
+                          factors=lambda f_s: np.ones((1, len(f_s))))
 
     def periodic(self) -> HarmonicForce:
         return self
@@ -99,13 +102,16 @@ class YoungForce(WalkingForce):
     def n_draws(self) -> int:
         return 4
 
-    def lines(self, step_frequency: ArrayLike, weight: ArrayLike, draws: ArrayLike) -> ForceLines:
-        f_s, W, draws = walkers(step_frequency, weight, draws, self.n_draws)
+    def parts(self, weight: ArrayLike, draws: ArrayLike) -> ForceParts:
+        W, draws = walkers(weight, draws, self.n_draws)
+        harmonics = np.eye(4)[:, np.newaxis] * (W[:, np.newaxis] * phasors(draws))
+        return ForceParts(coefficients=harmonics, first=1, spacing=1.0, factors=self._load_factors)
+
+    def _load_factors(self, step_frequency: Array) -> Array:
         constant, slope, cap = YOUNG[self.values]
-        factors = np.maximum(constant + slope * np.multiply.outer(f_s, [1, 2, 3, 4]), 0.0)
+        factors = np.maximum(constant + slope * np.multiply.outer(step_frequency, [1, 2, 3, 4]), 0.0)
         factors[:, 0] = np.minimum(factors[:, 0], cap)
-        return ForceLines(coefficients=W[:, np.newaxis] * factors * phasors(draws),
-                          first=1, spacing=1.0, step_frequency=f_s)
+        return factors.T
 
     def periodic(self) -> YoungForce:
         return self
