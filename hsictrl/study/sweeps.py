@@ -83,7 +83,8 @@ class Estimates:
         check.instance("point", point, Mapping, "give a dict of axes and one value of each")
         place: list[int | slice] = [slice(None)] * len(self.axes)
         for name, value in point.items():
-            place[_number(self.axes, name)] = _index(self.axes, name, value)
+            check.choice("axis", name, list(self.axes))
+            place[list(self.axes).index(name)] = _index(self.axes, name, value)
         axes = {name: values for name, values in self.axes.items() if name not in point}
         estimate, low, high = (array[tuple(place)] for array in (self.estimate, self.low, self.high))
         return Estimates(axes=axes, estimate=estimate, low=low, high=high)
@@ -346,10 +347,6 @@ def _told(value: Value) -> str:
 
 def _shape(axes: Axes) -> tuple[int, ...]:
     return tuple(map(len, axes.values()))
-
-
-def _number(axes: Axes, name: str) -> int:
-    return list(axes).index(check.choice("axis", name, list(axes)))
 
 
 def _index(axes: Axes, name: str, value: Value) -> int:
