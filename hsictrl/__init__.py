@@ -21,7 +21,18 @@ from hsictrl.resonance import (
     frf,
 )
 from hsictrl.stepper import Simulation, simulate
-from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo, trial_rng
+from hsictrl.study import (
+    AllRules,
+    Ensemble,
+    Ledger,
+    MeanRule,
+    PercentileRule,
+    StopRule,
+    Sweep,
+    monte_carlo,
+    sweep,
+    trial_rng,
+)
 from hsictrl.walking import ForceLines, HarmonicForce, MainHarmonics, WalkingForce, YoungForce, ZivanovicForce
 
 __version__ = "0.1.0"
@@ -31,9 +42,9 @@ __all__ = [
     "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "Ledger", "MainHarmonics", "MeanRule",
     "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian",
     "PercentileRule", "Population", "Prediction", "Shape", "Simulation", "SineShape", "SpectralEstimate",
-    "StopRule", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
+    "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
     "comfort_class", "couple", "design_acceleration", "effective", "effective_along", "effective_map",
     "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo",
     "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
-    "study_effective", "trial_rng", "tune", "weidmann_speed",
+    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]

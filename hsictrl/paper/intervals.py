@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-import numpy as np
-from scipy import stats
-
 from hsictrl._checks import Array
 from hsictrl.paper.reports import rounded
 from hsictrl.study import PercentileRule
+from hsictrl.study.ratios import ratios
 
 RULE = PercentileRule()
-RESAMPLES, RESAMPLING_SEED = 2000, 1
-BLOCK = 250     # resamples at a time, which bounds the memory
 
 
 class Interval(NamedTuple):
@@ -56,11 +52,6 @@ class Interval(NamedTuple):
         return cls(*(row[f"{name}{end}{unit}"] for end in ("", "_low", "_high")))
 
 
-def a95(samples: Array, axis: int = -1) -> Any:
-    """The percentile of the stop rule, by its own estimator."""
-    return np.quantile(samples, RULE.percentile / 100, axis=axis, method="hazen")
-
-
 def percentile(samples: Array) -> Interval:
     """The percentile with the interval of the stop rule."""
     found = RULE.judge(samples)
@@ -69,14 +60,8 @@ def percentile(samples: Array) -> Interval:
 
 def ratio(top: Array, bottom: Array) -> Interval:
     """Ratio of the percentiles of two quantities of the same trials, by a paired percentile bootstrap."""
-    found = stats.bootstrap(
-        (top, bottom), _quotient, paired=True, vectorized=True, n_resamples=RESAMPLES, batch=BLOCK,
-        confidence_level=RULE.confidence, method="percentile", rng=np.random.default_rng(RESAMPLING_SEED))
-    return Interval(float(_quotient(top, bottom)), *map(float, found.confidence_interval))
-
-
-def _quotient(top: Array, bottom: Array, axis: int = -1) -> Any:
-    return a95(top, axis) / a95(bottom, axis)
+    estimate, low, high = ratios(RULE, top[:, None], bottom[:, None])
+    return Interval(float(estimate[0]), float(low[0]), float(high[0]))
 
 
 def verdict(cells: Iterable[bool | None]) -> bool | None:

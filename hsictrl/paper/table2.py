@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 
 from hsictrl.paper.cells import CELLS, DEFAULT, FREQUENCIES, SPREADS, Cell, SharedTrafficTrial
-from hsictrl.paper.intervals import RESAMPLES, RULE, Interval, percentile, ratio
+from hsictrl.paper.intervals import RULE, Interval, percentile, ratio
 from hsictrl.paper.reports import Report, Rows, committed, rounded
 from hsictrl.paper.studies import study_each
 from hsictrl.prediction import ASSUMPTIONS, MODELS
 from hsictrl.study import Ensemble
+from hsictrl.study.ratios import RESAMPLES
 
 SEED, MAX_TRIALS = 2, 3000
 # Δa95 [%] by density and model, f_B = 2.00, 3.25, 5.00 Hz of case 1 and then of case 2

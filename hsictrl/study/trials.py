@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
 import numpy as np
 
@@ -17,11 +18,11 @@ from hsictrl.study.identity import described
 from hsictrl.study.ledger import Account, Ledger, account
 from hsictrl.study.rules import Judgement, PercentileRule, StopRule, judged
 
-_PAPER_RULE = PercentileRule()
+PAPER_RULE = PercentileRule()
 
 
 def monte_carlo(
-    trial: Trial, *, rule: StopRule = _PAPER_RULE, seed: int = 1, executor: Executor | None = None,
+    trial: Trial, *, rule: StopRule = PAPER_RULE, seed: int = 1, executor: Executor | None = None,
     max_trials: int = 20_000, label: str = "trials", ledger: Ledger | None = None,
 ) -> Ensemble:
     """Run independent trials until their estimate has settled.
@@ -64,13 +65,22 @@ def monte_carlo(
     >>> ensemble.converged, bool(ensemble.interval[0] < 2.448 < ensemble.interval[1])
     (True, True)
     """
-    _check_study(trial, rule, seed, executor, max_trials, ledger)
+    check_callable("trial", trial, "give a function of a numpy.random.Generator")
+    check_study(rule, seed, executor, max_trials, ledger)
+    return settled(trial, rule=rule, seed=seed, executor=executor, max_trials=max_trials, label=label, ledger=ledger)
+
+
+def settled(
+    trial: Trial, *, rule: StopRule, seed: int, executor: Executor | None, max_trials: int, label: str,
+    ledger: Ledger | None, shape: tuple[int, ...] | None = None,
+) -> Ensemble:
+    """Run a study whose arguments have been checked; refuse samples of another shape, if one is given."""
     samples: list[Array] = []
     with _account(ledger, label, trial, seed) as kept, progress() as bar:
         task, batches = bar.add_task(label, total=None), Batches(trial, seed, executor, kept)
         for n in checkpoints(rule, max_trials):
             for value in batches.values(range(len(samples), n)):
-                samples.append(_alike(value, samples))
+                samples.append(_alike(value, samples) if shape is None else _shaped(value, len(samples), label, shape))
                 bar.advance(task)
             judgement = judged(rule, np.array(samples))
             if judgement.converged:
@@ -124,16 +134,30 @@ def _alike(value: Array, samples: list[Array]) -> Array:
     return value
 
 
+def _shaped(value: Array, index: int, label: str, shape: tuple[int, ...]) -> Array:
+    if value.shape != shape:
+        raise ValueError(
+            f"result of trial {index} of '{label}' must have shape {shape}, got {value.shape}; return a row of one "
+            "number for every combination of the shared axes, or one number if there are none"
+        )
+    return value
+
+
 def _ending(judgement: Judgement, max_trials: int) -> str:
     stopped = "" if judgement.converged else f"stopped at max_trials={max_trials}: "
     return stopped + judgement.reason
 
 
-def _check_study(
-    trial: Trial, rule: StopRule, seed: int, executor: Executor | None, max_trials: int, ledger: Ledger | None,
+def check_callable(name: str, thing: Any, remedy: str) -> None:
+    """Refuse what can't be called."""
+    if not callable(thing):
+        raise TypeError(f"{name} must be callable, got {thing!r}; {remedy}")
+
+
+def check_study(
+    rule: StopRule, seed: int, executor: Executor | None, max_trials: int, ledger: Ledger | None,
 ) -> None:
-    if not callable(trial):
-        raise TypeError(f"trial must be callable, got {trial!r}; give a function of a numpy.random.Generator")
+    """Refuse a study that can't be run."""
     check.instance("rule", rule, StopRule, "give PercentileRule(...), MeanRule(...) or AllRules([...])")
     check.whole("seed", seed, least=0, remedy="give 0, 1, 2, …")
     check.whole("max_trials", max_trials, least=1, remedy="allow at least one trial")
