@@ -29,6 +29,7 @@ from hsictrl.plots import (
     effective_map_plot,
     effective_panels,
     frf_plot,
+    map_plot,
     models_plot,
     normalised_frf_plot,
     persons_plot,
@@ -62,6 +63,7 @@ def study(scale: float, rule: hsi.StopRule = WIDE) -> hsi.Ensemble:
 
 RECORDS = [acceleration(2.0, "MF"), acceleration(0.5, "PMC")]
 MARKS = {"steps": [1.9, 3.8], "bridge": 2.0}
+MAPS = {"few": np.add.outer([0.0, 1.0, 2.0], [0.0, 1.0]), "many": np.add.outer([4.0, 5.0, 6.0], [0.0, 2.0])}
 PERSONS = np.where(TIME < 5.0, 3, 4)
 STUDIES = [study(1.0), study(0.3)]
 MAP = {f"μ = {mu}": {"frequency": np.outer([1.0, 0.9, 1.1], np.ones(301)), "damping": np.full((3, 301), mu)}
@@ -92,6 +94,8 @@ DRAWINGS = {
     "assessment": (3, lambda ax: assessment_figure(
         frfs=FRFS, effective=FOUND, responses=RECORDS, ensembles=STUDIES, title="Bridge", ax=ax)),
     "map": (2, lambda ax: effective_map_plot(HERTZ, MAP, ax=ax)),
+    "maps": (2, lambda ax: map_plot(
+        [1.0, 2.0], [20.0, 30.0, 50.0], MAPS, quantity="Peak [m/s²]", columns=1, ax=ax)),
     "normalised": (2, lambda ax: normalised_frf_plot(
         HERTZ / 3.25, {"few": {"100": FRFS[1]}, "many": {"200": FRFS[1]}}, empty=FRFS[0], ax=ax)),
     "spectrum": (1, lambda ax: spectrum_plot(RECORDS[0], marks=MARKS, ax=ax)),
@@ -447,6 +451,178 @@ def test_effective_map_refusals() -> None:
         effective_map_plot([1.0], {})
     with pytest.raises(ValueError, match="ax must hold 2 axes, got 1; make them with"):
         effective_map_plot(HERTZ, MAP, ax=plt.subplots()[1])
+    with pytest.raises(ValueError, match="panels must hold at least one panel, got none; give"):
+        effective_panels([1.0], {})
+    with pytest.raises(ValueError, match=r"panels\['a'\] must hold at least one label, got none; give"):
+        effective_panels([1.0], {"a": {}})
+
+
+@pytest.mark.parametrize("wrong", [None, [1.0], 2.0])
+def test_effective_maps_of_no_mapping_are_refused(wrong: object) -> None:
+    got = type(wrong).__name__
+    with pytest.raises(TypeError, match=rf"^statistics must be of type Mapping, got {got}; give \{{label"):
+        effective_map_plot([1.0], wrong)
+    with pytest.raises(TypeError, match=rf"^statistics\['a'\] must be of type Mapping, got {got}; give \{{'frequency'"):
+        effective_map_plot([1.0], {"a": wrong})
+    with pytest.raises(TypeError, match=rf"^panels must be of type Mapping, got {got}; give \{{title"):
+        effective_panels([1.0], wrong)
+    with pytest.raises(TypeError, match=rf"^panels\['a'\] must be of type Mapping, got {got}; give \{{label"):
+        effective_panels([1.0], {"a": wrong})
+    assert plt.get_fignums() == []
+
+
+# maps
+
+ACROSS, ALONG = np.linspace(1.0, 6.0, 26), np.array([20.0, 30.0, 40.0, 50.0])
+RISING = ACROSS + 0.1 * ALONG[:, None]    # linear, from 3 to 11
+
+
+def maps(panels: dict[str, np.ndarray], **options) -> ct.ControlPlot:
+    return map_plot(ACROSS, ALONG, panels, quantity="Peak [m/s²]", **options)
+
+
+def test_contours_lie_where_the_field_has_their_value() -> None:
+    """By hand: f_B + 0.1 m_B is linear, so that each contour is a straight line."""
+    _, lines = maps({"rising": RISING}, levels=[4, 6, 8, 10]).lines[0, 0]
+    assert lines.levels.tolist() == [4, 6, 8, 10]
+    for level, (piece,) in zip(lines.levels, [level[:1] for level in lines.allsegs], strict=True):
+        np.testing.assert_allclose(piece[:, 0] + 0.1 * piece[:, 1], level, rtol=1e-12)
+
+
+def test_fills_change_at_the_levels() -> None:
+    filled, _ = maps({"rising": RISING}, levels=[4, 6, 8, 10]).lines[0, 0]
+    between = [np.concatenate([one @ [1.0, 0.1] for one in band]) for band in filled.allsegs]
+    assert [(low.min().round(9), low.max().round(9)) for low in between] == [(3, 4), (4, 6), (6, 8), (8, 10), (10, 11)]
+
+
+def test_all_maps_share_one_scale_over_the_range_of_all() -> None:
+    plot = maps({"low": RISING, "high": 2 * RISING, "flat": np.full_like(RISING, 5.0)})
+    low, high, flat = plot.lines[0]
+    assert low[0].norm is high[0].norm is flat[0].norm
+    levels = low[0].levels
+    assert (levels[0], levels[-1]) == (2.0, 22.0)    # 3 to 22 in steps of 2
+    np.testing.assert_array_equal(levels, np.linspace(2.0, 22.0, 11))
+    assert len(flat) == 1    # no level lies within it
+
+
+def test_one_colour_bar_names_the_quantity() -> None:
+    plot = maps({"low": RISING, "high": 2 * RISING})
+    bar, = set(plot.figure.axes) - set(plot.axes.flat)
+    assert bar.get_ylabel() == "Peak [m/s²]"
+    assert bar.get_ylim() == (2.0, 22.0)
+
+
+@pytest.mark.parametrize(("levels", "extend"), [
+    ([2, 6, 12], "neither"), ([4, 6, 12], "min"), ([2, 6, 10], "max"), ([4, 6], "both")])
+def test_the_scale_is_open_where_values_lie_beyond_it(levels: list[float], extend: str) -> None:
+    assert maps({"rising": RISING}, levels=levels).lines[0, 0][0].extend == extend
+
+
+def test_colours_grow_lighter_with_the_level() -> None:
+    """Relative luminance as of WCAG 2.1; lines stand out by 5 to 2 from the fills on either side."""
+    filled, lines = maps({"rising": RISING}, levels=[2, 4, 6, 8, 10, 12]).lines[0, 0]
+    fills, inks = ([luminance(one) for one in colours] for colours in (filled.get_facecolor(), lines.get_edgecolor()))
+    assert np.all(np.diff(fills) > 0.02)
+    for ink, below, above in zip(inks, fills[:-1], fills[1:], strict=True):
+        assert min(contrast(ink, below), contrast(ink, above)) > 2.5
+
+
+def luminance(colour: np.ndarray) -> float:
+    linear = np.where(colour[:3] <= 0.04045, colour[:3] / 12.92, ((colour[:3] + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def contrast(one: float, other: float) -> float:
+    return (max(one, other) + 0.05) / (min(one, other) + 0.05)
+
+
+def test_what_is_not_known_is_hatched() -> None:
+    holed = np.where((ACROSS > 4.9) & (ALONG[:, None] > 35.0), np.nan, RISING)
+    plot = maps({"whole": RISING, "holed": holed, "void": np.full_like(RISING, np.nan)})
+    filled, lines = plot.lines[0, 1]
+    for artist in (filled, lines):
+        corners = np.concatenate([piece for level in artist.allsegs for piece in level])
+        assert not np.any((corners[:, 0] > 4.9) & (corners[:, 1] > 35.0))
+    assert [bool(ax.patch.get_hatch()) for ax in plot.axes[0]] == [False, True, True]
+    assert [text.get_text() for text in plot.legend[0, 0].get_texts()] == ["not known"]
+    plot.figure.canvas.draw()
+
+
+def test_numbers_that_know_no_neighbour_make_no_contours() -> None:
+    alone = np.full((3, 3), np.nan)
+    alone[0, 0], alone[2, 2] = 1.0, 2.0
+    map_plot([1, 2, 3], [1, 2, 3], {"alone": alone}, quantity="Peak [m/s²]").figure.canvas.draw()
+
+
+def test_fifteen_maps_stand_in_three_rows_with_names_outside_only() -> None:
+    plot = maps({f"{xi} %, {d} /m²": d * RISING for xi in (0.2, 0.5, 2.0) for d in (0.2, 0.5, 0.8, 1.0, 1.5)})
+    assert plot.axes.shape == (3, 5)
+    assert plot.axes[2, 4].get_title("left") == "(o) 2.0 %, 1.5 /m²"
+    plot.figure.canvas.draw()
+    for (row, column), ax in np.ndenumerate(plot.axes):
+        assert ax.get_xlabel() == ("Frequency $f_B$ [Hz]" if row == 2 else "")
+        assert ax.get_ylabel() == ("Modal mass $m_B$ [t]" if column == 0 else "")
+        assert any(tick.label1.get_visible() for tick in ax.xaxis.get_major_ticks()) == (row == 2)
+        assert any(tick.label1.get_visible() for tick in ax.yaxis.get_major_ticks()) == (column == 0)
+        assert ax.get_yticks().tolist() == ALONG.tolist()
+
+
+def test_names_of_contours_do_not_meet_and_lie_within_their_panel() -> None:
+    steep = 10.0 * np.exp(-(((ACROSS - 2.0) / 0.5) ** 2)) * 20.0 / ALONG[:, None]
+    plot = maps({f"{i}": i * steep for i in range(10, 25)})
+    plot.figure.canvas.draw()
+    for ax, (_, *lines) in zip(plot.axes.flat, plot.lines.flat, strict=True):
+        boxes = [text.get_window_extent() for one in lines for text in one.labelTexts]
+        assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+        assert all(ax.bbox.count_contains(box.corners()) == 4 for box in boxes)
+        assert boxes
+
+
+def test_contours_are_named_by_their_levels() -> None:
+    texts = maps({"rising": RISING}, levels=[4, 6, 8.5]).lines[0, 0][1].labelTexts
+    assert sorted(float(text.get_text()) for text in texts) == [4, 6, 8.5]
+    for text in texts:
+        assert np.dot(text.get_position(), [1.0, 0.1]) == pytest.approx(float(text.get_text()), rel=1e-6)
+
+
+def test_a_value_that_is_the_same_everywhere_has_a_scale_about_it() -> None:
+    levels = maps({"flat": np.ones_like(RISING)}).lines[0, 0][0].levels
+    assert (levels[0], levels[-1]) == pytest.approx((0.9, 1.1))
+    maps({"nothing": np.zeros_like(RISING)}).figure.canvas.draw()
+
+
+def test_a_table_of_axes_says_which_are_outside() -> None:
+    _, axes = plt.subplots(3, 2)
+    plot = maps({f"{i}": RISING for i in range(6)}, ax=axes)
+    assert plot.axes.tolist() == axes.tolist()
+    assert [ax.get_xlabel() != "" for ax in axes[:, 0]] == [False, False, True]
+
+
+def test_panels_beyond_z_have_titles_too() -> None:
+    assert maps({f"{i}": RISING for i in range(28)}).axes.flat[27].get_title("left") == "(ab) 27"
+
+
+@pytest.mark.parametrize(("changes", "kind", "refusal"), [
+    ({"x": [1.0, 3.0, 2.0]}, ValueError, "x must increase, got 3 and then 2; sort them, and the columns"),
+    ({"y": [20.0, 20.0]}, ValueError, "y must increase, got 20 and then 20; sort them, and the rows"),
+    ({"x": [1.0]}, ValueError, r"x must hold at least 2 number\(s\), got 1; sort"),
+    ({"y": [[1.0, 2.0]]}, ValueError, r"y must have 1 dimension\(s\), got shape \(1, 2\); sort"),
+    ({"panels": {}}, ValueError, r"panels must hold at least one panel, got none; give \{title: array"),
+    ({"panels": None}, TypeError, r"panels must be of type Mapping, got NoneType; give \{title: array"),
+    ({"panels": {"a": np.ones((3, 2))}}, ValueError, r"panels\['a'\] must have shape \(2, 3\), got \(3, 2\); give"),
+    ({"panels": {"a": [[1, 2, 3], [4, 5, np.inf]]}}, ValueError, r"panels\['a'\]\[1, 2\] must be finite, got inf; g"),
+    ({"panels": {"a": "map"}}, TypeError, r"panels\['a'\] must be real numbers, got 'map'; give"),
+    ({"panels": {"a": np.full((2, 3), np.nan)}}, ValueError, "panels must hold at least one number, got only nan; g"),
+    ({"levels": [1.0, 3.0, 2.0]}, ValueError, "levels must increase, got 3 and then 2; give them from low to high"),
+    ({"levels": [1.0]}, ValueError, r"levels must hold at least 2 number\(s\), got 1; give"),
+    ({"columns": 2}, ValueError, "panels must fill their rows, got 1 in 2 columns; give a divisor of 1"),
+    ({"columns": 0}, ValueError, "columns must be at least 1, got 0; give the number of panels side by side"),
+    ({"ax": []}, ValueError, "ax must hold 1 axes, got 0; make them with")])
+def test_map_refusals(changes: dict[str, object], kind: type, refusal: str) -> None:
+    given = {"x": [1.0, 2.0, 3.0], "y": [20.0, 50.0], "panels": {"a": np.ones((2, 3))}} | changes
+    with pytest.raises(kind, match=f"^{refusal}"):
+        map_plot(**given, quantity="Peak [m/s²]")
+    assert plt.get_fignums() == []
 
 
 # schematics

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import control as ct
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, Colormap
+from matplotlib.colors import BoundaryNorm
 from matplotlib.contour import ContourSet
 from matplotlib.legend import Legend
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Affine2D
 from numpy.typing import ArrayLike
+from scipy.spatial import KDTree
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.plots import _canvas as canvas
 
 COLOURS = "viridis"     # lightness rises evenly, so that it survives print in grey and colour-blindness
-UNKNOWN = {"facecolor": "0.93", "edgecolor": "0.6", "hatch": "////"}
-BANDS = 8               # at most, where no levels are given
+UNKNOWN: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "0.6", "hatch": "////"}
+BANDS = 10              # at most, where no levels are given
+NAMED = 20              # pieces of lines in a panel, at most
 FEW = 6                 # as many rows are named at the vertical axis one by one
 REMEDY = "give {title: array of shape (len(y), len(x))}"
 
@@ -84,7 +87,7 @@ def map_plot(
     axes = _axes(ax, len(fields), columns)
     drawn = [_panel(one, across, along, field, scale) for one, field in zip(axes.flat, fields.values(), strict=True)]
     _name(axes, fields, xlabel, ylabel)
-    axes.flat[0].figure.colorbar(drawn[0][0], ax=list(axes.flat), label=quantity)
+    axes.flat[0].figure.colorbar(drawn[0][0], ax=list(axes.flat), label=quantity, pad=0.02)
     return canvas.control_plot(drawn, axes, _legends(axes, fields.values()))
 
 
@@ -106,8 +109,41 @@ def _lines(ax: Axes, x: Array, y: Array, field: np.ma.MaskedArray, scale: dict[s
         return []
     lines = ax.contour(x, y, field, levels=crossed, linewidths=0.8,
                        colors=[_readable(scale["cmap"](scale["norm"](level))) for level in crossed])
-    lines.clabel(fontsize="x-small", fmt="%g")
+    lines.clabel(fontsize="x-small", fmt="%g", manual=_places(lines, ax))
     return [lines]
+
+
+def _places(lines: ContourSet, ax: Axes) -> list[tuple[float, float]]:
+    """Where to name the longest pieces of the lines, clear of all else; matplotlib's own choice lets names meet."""
+    points = ax.transData + Affine2D().scale(72 / ax.figure.dpi)
+    frame = points.transform([(ax.viewLim.x0, ax.viewLim.y0), (ax.viewLim.x1, ax.viewLim.y1)])
+    pieces = sorted((_close(points.transform(one)) for level in lines.allsegs for one in level if len(one)),
+                    key=len, reverse=True)
+    placed = np.empty((0, 2))
+    for i, piece in enumerate(pieces[:NAMED]):
+        room = _room(piece, [*pieces[:i], *pieces[i + 1:]], placed, frame)
+        if room.max() >= 1:
+            placed = np.vstack([placed, piece[room.argmax()]])
+    return [tuple(one) for one in points.inverted().transform(placed)]
+
+
+def _room(piece: Array, others: list[Array], placed: Array, frame: Array) -> Array:
+    """Distance to other lines, names and the frame, over that which a name needs."""
+    lines = np.concatenate([np.empty((0, 2)), *others])
+    edges = np.abs(piece[:, None] - frame).min(axis=(1, 2))
+    return np.min([_distance(piece, lines) / 5, _distance(piece, placed) / 22, edges / 12], axis=0)     # all in pt
+
+
+def _close(corners: Array) -> Array:
+    """Points of a polygon every 2 pt or so, at least its ends."""
+    along = np.concatenate([[0.0], np.hypot(*np.diff(corners, axis=0).T).cumsum()])
+    at = np.linspace(0.0, along[-1], 2 + int(along[-1] / 2))
+    return np.column_stack([np.interp(at, along, one) for one in corners.T])
+
+
+def _distance(points: Array, others: Array) -> Array:
+    """From each point to the nearest of the others."""
+    return np.asarray(KDTree(others).query(points)[0])
 
 
 def _readable(fill: tuple[float, ...]) -> str:
@@ -142,21 +178,39 @@ def _scale(known: Array, levels: ArrayLike | None) -> dict[str, Any]:
     if not known.size:
         raise ValueError(f"panels must hold at least one number, got only nan; {REMEDY}")
     low, high = float(known.min()), float(known.max())
-    chosen = MaxNLocator(BANDS).tick_values(low, high) if levels is None else check.increasing(
+    chosen = _round(low, high) if levels is None else check.increasing(
         "levels", levels, remedy="give them from low to high")
-    ends = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
-    extend, cmap = ends[low < chosen[0], high > chosen[-1]], mpl.colormaps[COLOURS]
+    extend, cmap = _open_ends(low < chosen[0], high > chosen[-1]), mpl.colormaps[COLOURS]
     return {"levels": chosen, "extend": extend, "cmap": cmap, "norm": BoundaryNorm(chosen, cmap.N, extend=extend)}
 
 
+def _open_ends(below: bool, above: bool) -> Literal["neither", "min", "max", "both"]:
+    """Whether the scale goes on beyond its levels."""
+    if below:
+        return "both" if above else "min"
+    return "max" if above else "neither"
+
+
+def _round(low: float, high: float) -> Array:
+    """A few round levels, spread about a value that is the same everywhere."""
+    about = 0.1 * abs(high) or 0.1
+    ends = (low, high) if high - low > 1e-6 * about else (low - about, high + about)
+    return np.asarray(MaxNLocator(BANDS, steps=[1, 2, 2.5, 5, 10]).tick_values(*ends))
+
+
 def _axes(ax: Sequence[Axes] | np.ndarray | None, n: int, columns: int | None) -> np.ndarray:
-    if columns is None:
-        table = isinstance(ax, np.ndarray) and ax.ndim == 2 and ax.size == n
-        columns = ax.shape[1] if table else max(one for one in range(1, 6) if n % one == 0)
+    columns = _columns(ax, n) if columns is None else columns
     rows = canvas.rows(n, columns)
     width = min(max(2.6, 12.0 / columns), 4.6)
     size = (width * columns + 1.0, 0.78 * width * rows + 0.4)
     return canvas.several_axes(ax, rows, figsize=size, columns=columns, sharey=False)
+
+
+def _columns(ax: Sequence[Axes] | np.ndarray | None, n: int) -> int:
+    """Those of a table of axes, otherwise as many as leave no gap."""
+    if isinstance(ax, np.ndarray) and ax.ndim == 2 and ax.size == n:
+        return ax.shape[1]
+    return max(one for one in range(1, 6) if n % one == 0)
 
 
 def _fields(panels: Mapping[str, ArrayLike], shape: tuple[int, int]) -> dict[str, np.ma.MaskedArray]:
