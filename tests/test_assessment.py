@@ -28,7 +28,7 @@ from hsictrl import (
     trial_rng,
     tune,
 )
-from hsictrl.assessment import EffectiveTrial, PeakTrial, effective_rule
+from hsictrl.assessment import EffectiveTrial, PeakTrial, assessing, effective_rule
 from hsictrl.study import AllRules
 
 BRIDGE, FLOW, SEED = reference_bridge(frequency=2.0), CrowdFlow(persons=15), 4
@@ -133,9 +133,8 @@ def test_the_interval_of_the_mean_is_student_s(found):
 # remarks
 
 def test_a_study_that_has_not_settled_says_so(monkeypatch):
-    import hsictrl.assessment as room
-    usual = room.monte_carlo
-    monkeypatch.setattr(room, "monte_carlo", lambda *a, **k: usual(*a, **k, max_trials=30))
+    usual = assessing.monte_carlo
+    monkeypatch.setattr(assessing, "monte_carlo", lambda *a, **k: usual(*a, **k, max_trials=30))
     found = assess(BRIDGE, FLOW, force=HarmonicForce([0.4]), rule=PercentileRule(percentile=50.0, tolerance=0.01))
     assert [remark[:26] for remark in found.remarks] == [
         "MF: stopped at max_trials=", "PMC: stopped at max_trials", "effective properties: stop"]
@@ -208,6 +207,6 @@ LATERAL = Footbridge(modes=[SWAY], length=50.0, width=3.0, mass=50e3)
     (BRIDGE, CrowdFlow(persons=900), r"density must lie in \(0, 1.5\], got 6; beyond 1.5 persons/m²"),
 ])
 def test_what_the_guide_refuses_is_refused_before_the_first_trial(monkeypatch, bridge, flow, message):
-    monkeypatch.setattr("hsictrl.assessment.monte_carlo", lambda *a, **k: pytest.fail("a study was begun"))
+    monkeypatch.setattr(assessing, "monte_carlo", lambda *a, **k: pytest.fail("a study was begun"))
     with pytest.raises(ValueError, match=message):
         assess(bridge, flow)

@@ -1,200 +1,24 @@
-"""From a bridge and a flow of people to a design acceleration, with and without interaction, and a comfort class."""
+"""Studies of a bridge under a flow of people, the guides' value beside them, and what is refused before they begin."""
 
 from __future__ import annotations
 
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
-from typing import Any, final
 
 import numpy as np
 
 from hsictrl import _checks as check
-from hsictrl._checks import Array
+from hsictrl.assessment.assessed import Assessment
+from hsictrl.assessment.trials import EffectiveTrial, PeakTrial, check_case
 from hsictrl.bridge import Footbridge
-from hsictrl.comfort import DesignResponse, comfort_class, design_acceleration
-from hsictrl.coupling import couple
+from hsictrl.comfort import DesignResponse, design_acceleration
 from hsictrl.crowd import CrowdFlow
-from hsictrl.prediction import MODELS, Prediction, predict, predict_tuned, tune
+from hsictrl.prediction import tune
 from hsictrl.prediction.refusals import check_vertical
-from hsictrl.resonance import effective
 from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
 PERSON_MASS = 70.0   # kg, of the guides
 PAPER_RULE = PercentileRule()
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PeakTrial:
-    """A trial: traffic tuned to a model's own resonance, and the peak acceleration it causes (sections 2.2 and 4.3).
-
-    Parameters
-    ----------
-    model : str
-        "SF", "MF", "MFAM", "PMC" or "MC".
-    bridge : Footbridge
-        The empty bridge.
-    flow : CrowdFlow
-        The stream of people.
-    force : WalkingForce
-        Their walking force.
-
-    Examples
-    --------
-    >>> from hsictrl.bridge import reference_bridge
-    >>> trial = PeakTrial(model="PMC", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
-    >>> bool(trial(np.random.default_rng(1)) > 0)     # m/s²
-    True
-    """
-
-    model: str
-    bridge: Footbridge
-    flow: CrowdFlow
-    force: WalkingForce = field(default_factory=ZivanovicForce)
-
-    def __post_init__(self) -> None:
-        check.choice("model", self.model, MODELS)
-        _check_case(self.bridge, self.flow)
-        check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
-
-    def __call__(self, rng: np.random.Generator) -> float:
-        return self.prediction(rng).peak_acceleration
-
-    def prediction(self, rng: np.random.Generator) -> Prediction:
-        """The response behind the peak.
-
-        Parameters
-        ----------
-        rng : numpy.random.Generator
-            Source of randomness; ``trial_rng(seed, i)`` for trial i of a study.
-
-        Returns
-        -------
-        Prediction
-
-        Examples
-        --------
-        >>> from hsictrl.bridge import reference_bridge
-        >>> trial = PeakTrial(model="PMC", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
-        >>> trial.prediction(np.random.default_rng(1)).model
-        'PMC'
-        """
-        traffic = self.flow.sample(self.bridge, rng=rng, force=self.force)
-        forecast = predict_tuned if self.flow.step_frequency is None else predict
-        return forecast(self.model, self.bridge, traffic)
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EffectiveTrial:
-    """A trial: a standing crowd, and the effective frequency [Hz] and damping [-] of the bridge (section 3.1).
-
-    Parameters
-    ----------
-    bridge : Footbridge
-        The empty bridge.
-    flow : CrowdFlow
-        Says how many people there are and who.
-    mode : int
-        Which mode of the bridge, from 0 [-].
-
-    Examples
-    --------
-    >>> from hsictrl.bridge import reference_bridge
-    >>> EffectiveTrial(bridge=reference_bridge(), flow=CrowdFlow(persons=15))(np.random.default_rng(1)).shape
-    (2,)
-    """
-
-    bridge: Footbridge
-    flow: CrowdFlow
-    mode: int = 0
-
-    def __post_init__(self) -> None:
-        _check_case(self.bridge, self.flow)
-        self.bridge.mode(self.mode)
-
-    def __call__(self, rng: np.random.Generator) -> Array:
-        people, places = self.flow.crowd(self.bridge, rng)
-        return np.array([*effective(couple(self.bridge, people, places), mode=self.mode)])
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Assessment:
-    """What an assessment found for one flow of people.
-
-    Parameters
-    ----------
-    bridge : Footbridge
-        The empty bridge.
-    flow : CrowdFlow
-        The stream of people.
-    effective : Ensemble
-        Effective frequency [Hz] and damping ratio [-] of the occupied bridge: means.
-    mf, pmc : Ensemble
-        Peak acceleration without (MF) and with (PMC) human-structure interaction: a percentile [m/s²].
-    guide : DesignResponse
-        Design acceleration of HiVoSS for the same density [m/s²].
-    remarks : tuple of str
-        What a reader of the numbers should know.
-
-    Examples
-    --------
-    >>> from hsictrl.bridge import reference_bridge
-    >>> found = assess(reference_bridge(), CrowdFlow(persons=15), rule=PercentileRule(tolerance=0.5))
-    >>> found.reduction > 1
-    True
-    """
-
-    bridge: Footbridge
-    flow: CrowdFlow
-    effective: Ensemble
-    mf: Ensemble
-    pmc: Ensemble
-    guide: DesignResponse
-    remarks: tuple[str, ...] = ()
-
-    @property
-    def reduction(self) -> float:
-        """Reduction factor R_HSI (eq. 18) [-]."""
-        return float(self.mf.estimate / self.pmc.estimate)
-
-    @property
-    def reduction_interval(self) -> tuple[float, float]:
-        """Interval of R_HSI from the ends of both intervals; it covers at least as much as both do together [-]."""
-        (low, high), (least, most) = self.mf.interval, self.pmc.interval
-        return float(low / most), float(high / least)
-
-    @property
-    def classes(self) -> tuple[str, str]:
-        """Comfort class without and with interaction."""
-        return comfort_class(float(self.mf.estimate)), comfort_class(float(self.pmc.estimate))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Export with the units in the keys.
-
-        Returns
-        -------
-        dict
-            Plain numbers and strings, ready for JSON, a CSV row or a data frame.
-
-        Examples
-        --------
-        >>> from hsictrl.bridge import reference_bridge
-        >>> found = assess(reference_bridge(), CrowdFlow(persons=15), rule=PercentileRule(tolerance=0.5))
-        >>> found.to_dict()["persons"]
-        15
-        """
-        found, (low, high) = np.ravel(self.effective.estimate), map(np.ravel, self.effective.interval)
-        return {
-            "density_per_m2": self.flow.density_on(self.bridge), "persons": self.flow.persons_on(self.bridge),
-            **_quantity("f_eff", "_hz", found[0], (low[0], high[0])),
-            **_quantity("xi_eff", "", found[1], (low[1], high[1])), "effective_trials": self.effective.n_trials,
-            **_peak("a_mf", self.mf), **_peak("a_pmc", self.pmc),
-            **_quantity("r_hsi", "", self.reduction, self.reduction_interval),
-            "class_mf": self.classes[0], "class_pmc": self.classes[1],
-            "hivoss_m_per_s2": self.guide.acceleration, "remarks": "; ".join(self.remarks)}
 
 
 def assess(
@@ -333,7 +157,7 @@ def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", m
     >>> round(guide_value(reference_bridge(frequency=2.0, damping=0.005), CrowdFlow(density=0.5)).acceleration, 3)
     4.268
     """
-    _check_case(bridge, flow)
+    check_case(bridge, flow)
     resonant, density = bridge.mode(mode), flow.density_on(bridge)
     return design_acceleration(
         frequency=resonant.frequency, damping=resonant.damping, modal_mass=resonant.modal_mass, density=density,
@@ -362,7 +186,7 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
     >>> from hsictrl.bridge import reference_bridge
     >>> check_assessable(reference_bridge(), CrowdFlow(density=1.5))
     """
-    _check_case(bridge, flow)
+    check_case(bridge, flow)
     if not flow.persons_on(bridge):
         raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
                          "give a higher one")
@@ -380,19 +204,3 @@ def _remarks(
     silent = () if guide.reduction else (outside,)
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
     return (*dict.fromkeys(drawn.remarks + tuned), *silent, *unsettled)
-
-
-def _check_case(bridge: Any, flow: Any) -> None:
-    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
-    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
-
-
-def _quantity(name: str, unit: str, estimate: Any, interval: Any) -> dict[str, float]:
-    """An estimate and the ends of its interval, the unit last in each key."""
-    parts = {"": estimate, "_low": interval[0], "_high": interval[1]}
-    return {f"{name}{part}{unit}": float(value) for part, value in parts.items()}
-
-
-def _peak(name: str, ensemble: Ensemble) -> dict[str, Any]:
-    return {**_quantity(name, "_m_per_s2", ensemble.estimate, ensemble.interval),
-            f"{name}_trials": ensemble.n_trials, f"{name}_converged": ensemble.converged}

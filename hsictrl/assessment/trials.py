@@ -1,0 +1,118 @@
+"""One trial of a study of a bridge and a flow: a peak acceleration, or effective properties."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, final
+
+import numpy as np
+
+from hsictrl import _checks as check
+from hsictrl._checks import Array
+from hsictrl.bridge import Footbridge
+from hsictrl.coupling import couple
+from hsictrl.crowd import CrowdFlow
+from hsictrl.prediction import MODELS, Prediction, predict, predict_tuned
+from hsictrl.resonance import effective
+from hsictrl.walking import WalkingForce, ZivanovicForce
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PeakTrial:
+    """A trial: traffic tuned to a model's own resonance, and the peak acceleration it causes (sections 2.2 and 4.3).
+
+    Parameters
+    ----------
+    model : str
+        "SF", "MF", "MFAM", "PMC" or "MC".
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        The stream of people.
+    force : WalkingForce
+        Their walking force.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> trial = PeakTrial(model="PMC", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
+    >>> bool(trial(np.random.default_rng(1)) > 0)     # m/s²
+    True
+    """
+
+    model: str
+    bridge: Footbridge
+    flow: CrowdFlow
+    force: WalkingForce = field(default_factory=ZivanovicForce)
+
+    def __post_init__(self) -> None:
+        check.choice("model", self.model, MODELS)
+        check_case(self.bridge, self.flow)
+        check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
+
+    def __call__(self, rng: np.random.Generator) -> float:
+        return self.prediction(rng).peak_acceleration
+
+    def prediction(self, rng: np.random.Generator) -> Prediction:
+        """The response behind the peak.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            Source of randomness; ``trial_rng(seed, i)`` for trial i of a study.
+
+        Returns
+        -------
+        Prediction
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> trial = PeakTrial(model="PMC", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
+        >>> trial.prediction(np.random.default_rng(1)).model
+        'PMC'
+        """
+        traffic = self.flow.sample(self.bridge, rng=rng, force=self.force)
+        forecast = predict_tuned if self.flow.step_frequency is None else predict
+        return forecast(self.model, self.bridge, traffic)
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EffectiveTrial:
+    """A trial: a standing crowd, and the effective frequency [Hz] and damping [-] of the bridge (section 3.1).
+
+    Parameters
+    ----------
+    bridge : Footbridge
+        The empty bridge.
+    flow : CrowdFlow
+        Says how many people there are and who.
+    mode : int
+        Which mode of the bridge, from 0 [-].
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> EffectiveTrial(bridge=reference_bridge(), flow=CrowdFlow(persons=15))(np.random.default_rng(1)).shape
+    (2,)
+    """
+
+    bridge: Footbridge
+    flow: CrowdFlow
+    mode: int = 0
+
+    def __post_init__(self) -> None:
+        check_case(self.bridge, self.flow)
+        self.bridge.mode(self.mode)
+
+    def __call__(self, rng: np.random.Generator) -> Array:
+        people, places = self.flow.crowd(self.bridge, rng)
+        return np.array([*effective(couple(self.bridge, people, places), mode=self.mode)])
+
+
+def check_case(bridge: Any, flow: Any) -> None:
+    """Refuse what is no bridge, or no flow."""
+    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
