@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -12,7 +13,8 @@ from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
 from hsictrl.crowd import CrowdFlow
-from hsictrl.prediction import MODELS, Prediction, predict, predict_tuned
+from hsictrl.prediction import MODELS, Prediction, check_alike, predict, predict_tuned, tuned_peaks
+from hsictrl.prediction.shared import SHARED_MODELS
 from hsictrl.resonance import effective
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
@@ -76,6 +78,57 @@ class PeakTrial:
         traffic = self.flow.sample(self.bridge, rng=rng, force=self.force)
         forecast = predict_tuned if self.flow.step_frequency is None else predict
         return forecast(self.model, self.bridge, traffic)
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PeaksTrial:
+    """A trial: one sample of traffic, and the peak accelerations that models predict for it on several bridges.
+
+    Each bridge and model has the traffic tuned to its own resonance, as in `PeakTrial`; what they share is worked out
+    once (`tuned_peaks`).
+
+    Parameters
+    ----------
+    models : sequence of str
+        "SF", "MF" or "PMC".
+    bridges : sequence of Footbridge
+        Empty bridges of one mode, which may differ in its frequency, damping and modal mass.
+    flow : CrowdFlow
+        The stream of people, without a step frequency of its own.
+    force : WalkingForce
+        Their walking force.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> trial = PeaksTrial(models=("MF", "PMC"), flow=CrowdFlow(density=0.2),
+    ...                    bridges=[reference_bridge(damping=damping) for damping in (0.002, 0.005, 0.02)])
+    >>> trial(np.random.default_rng(1)).shape        # MF on all bridges, then PMC [m/s²]
+    (6,)
+    """
+
+    models: Sequence[str]
+    bridges: Sequence[Footbridge]
+    flow: CrowdFlow
+    force: WalkingForce = field(default_factory=ZivanovicForce)
+
+    def __post_init__(self) -> None:
+        check.store(self, models=tuple(self.models), bridges=tuple(self.bridges))
+        for model in self.models:
+            check.choice("models", model, SHARED_MODELS)
+        for bridge in self.bridges:
+            check_case(bridge, self.flow)
+        check_alike(self.bridges)
+        if self.flow.step_frequency is not None:
+            raise ValueError("flow must leave step frequencies to the resonance of each bridge, got step_frequency="
+                             f"{self.flow.step_frequency}; leave it out, or use PeakTrial")
+        check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
+
+    def __call__(self, rng: np.random.Generator) -> Array:
+        slowest = min(self.bridges, key=lambda bridge: bridge.damping[0] * bridge.omega[0])
+        traffic = self.flow.sample(slowest, rng=rng, force=self.force)
+        return np.concatenate([tuned_peaks(model, self.bridges, traffic) for model in self.models])
 
 
 @final

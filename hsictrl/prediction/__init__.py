@@ -3,6 +3,7 @@
 from hsictrl.prediction.assumptions import ASSUMPTIONS, Assumptions
 from hsictrl.prediction.estimate import SpectralEstimate, spectral_estimate
 from hsictrl.prediction.models import MODELS, Prediction, predict, predict_tuned, tune
+from hsictrl.prediction.shared import check_alike, tuned_peaks
 
-__all__ = ["ASSUMPTIONS", "MODELS", "Assumptions", "Prediction", "SpectralEstimate", "predict", "predict_tuned",
-           "spectral_estimate", "tune"]
+__all__ = ["ASSUMPTIONS", "MODELS", "Assumptions", "Prediction", "SpectralEstimate", "check_alike", "predict",
+           "predict_tuned", "spectral_estimate", "tune", "tuned_peaks"]

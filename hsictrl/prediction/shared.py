@@ -62,7 +62,7 @@ def tuned_peaks(model: str, bridges: Sequence[Footbridge], traffic: Traffic) -> 
     """
     check.choice("model", model, SHARED_MODELS)
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
-    deck, table = _deck(bridges), np.array([_properties(bridge.modes[0]) for bridge in bridges])
+    deck, table = check_alike(bridges), np.array([_properties(bridge.modes[0]) for bridge in bridges])
     crowd = _crowd(deck, traffic) if model == "PMC" else None
     if crowd is not None:
         return _peaks(_signals(deck, traffic, crowd, table))
@@ -134,8 +134,30 @@ def _grid(traffic: Traffic, deck: Footbridge, parts: Parts, steps: Array, highes
     return Grid.over(window, float(np.min(traffic.walkers.arrival, initial=window[0])), float(lines), highest)
 
 
-def _deck(bridges: Sequence[Footbridge]) -> Footbridge:
-    """The deck that all bridges share, with a modal mass of 1 kg: it takes part with the shape itself."""
+def check_alike(bridges: Sequence[Footbridge]) -> Footbridge:
+    """Refuse bridges that differ in more than the frequency, damping and mass of a single mode.
+
+    Parameters
+    ----------
+    bridges : sequence of Footbridge
+        Empty bridges.
+
+    Returns
+    -------
+    Footbridge
+        The deck that all share, with a modal mass of 1 kg, so that it takes part with the shape itself.
+
+    Raises
+    ------
+    ValueError
+        If a bridge has several modes, or a deck or shape of its own.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> check_alike([reference_bridge(), reference_bridge(damping=0.01)]).modes[0].modal_mass
+    1.0
+    """
     if not len(bridges):
         raise ValueError("bridges must hold at least one, got none; give [reference_bridge()]")
     for bridge in bridges:
