@@ -48,8 +48,9 @@ def steady_accelerations(system: OccupiedBridge, walkers: Walkers, places: Array
     for who, force in walkers.lines():
         _refuse_resonance(system.bridge, force)
         for signal, response in zip(total, _responses(system, rows[who], force), strict=True):
-            starts = np.full(len(who), grid.times[0])
-            signal += response.on_grid(starts, len(grid.times), grid.given).sum(axis=0)
+            together = _in_step(response)
+            starts = np.full(together.n_walkers, grid.times[0])
+            signal += together.on_grid(starts, len(grid.times), grid.given).sum(axis=0)
     return total
 
 
@@ -59,6 +60,14 @@ def _responses(system: OccupiedBridge, rows: Array, force: ForceLines) -> list[F
     s = np.asarray(2j * np.pi * force.frequencies.ravel(), dtype=np.complex128)
     return [replace(force, coefficients=spectrum.reshape(force.coefficients.shape))
             for spectrum in system.respond(s, modal)]
+
+
+def _in_step(force: ForceLines) -> ForceLines:
+    """The same sum, of one walker for all who step at the same frequency."""
+    frequencies, of = np.unique(force.step_frequency, return_inverse=True)
+    coefficients = np.zeros((len(frequencies), force.coefficients.shape[1]), dtype=complex)
+    np.add.at(coefficients, of, force.coefficients)
+    return replace(force, coefficients=coefficients, step_frequency=frequencies)
 
 
 def _refuse_resonance(bridge: Footbridge, force: ForceLines) -> None:
