@@ -128,7 +128,7 @@ class PeaksTrial:
     def __call__(self, rng: np.random.Generator) -> Array:
         slowest = min(self.bridges, key=lambda bridge: bridge.damping[0] * bridge.omega[0])
         traffic = self.flow.sample(slowest, rng=rng, force=self.force)
-        return np.concatenate([tuned_peaks(model, self.bridges, traffic) for model in self.models])
+        return tuned_peaks(self.models, self.bridges, traffic).ravel()
 
 
 @final

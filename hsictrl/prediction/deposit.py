@@ -15,7 +15,7 @@ ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)    # unsigned, or eve
 
 
 @njit(cache=True, **COMPILED)     # its parts are inlined into it
-def deposit(total, first, shapes, tables, factors, cycles, pace):  # type: ignore[no-untyped-def]
+def deposit(total, first, shapes, tables, factors, steps_on, cycles, pace):  # type: ignore[no-untyped-def]
     """Add the modal forces of n walkers, each over samples of its own crossing, at u step frequencies at once.
 
     total : (u, n_m, count), modal forces to which is added
@@ -23,6 +23,7 @@ def deposit(total, first, shapes, tables, factors, cycles, pace):  # type: ignor
     shapes : (n_m, n, samples), modes under each walker, zero off the deck
     tables : (p, n, size + 4), `tabulated` parts of the forces
     factors : (u, p, n), what they are multiplied by
+    steps_on : (u, n), whether a walker comes at all
     cycles, pace : (u, n), periods of the comb that have gone by at the first sample, and from one to the next
     """
     samples, knots = shapes.shape[2], np.empty(shapes.shape[2], np.int64)
@@ -30,6 +31,8 @@ def deposit(total, first, shapes, tables, factors, cycles, pace):  # type: ignor
     for k in range(len(first)):
         start, stop = max(0, -first[k]), max(0, min(samples, total.shape[2] - first[k]))
         for u in range(len(total)):
+            if not steps_on[u, k]:
+                continue
             _blend(tables, factors, u, k, table)
             _read(table, cycles[u, k], pace[u, k], force, knots, between)
             for j in range(total.shape[1]):

@@ -18,6 +18,7 @@ from hsictrl.walking.lines import WALKERS_AT_ONCE, Complex, tabulated
 SHAPES_AT_ONCE = 64     # walkers
 
 Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 Lines = list[tuple[Indices, ForceLines]]
 Parts = list[tuple[Indices, ForceParts]]
 
@@ -44,11 +45,13 @@ def modal_force(bridge: Footbridge, walkers: Walkers, lines: Lines, grid: Grid) 
     total = np.zeros((1, bridge.n_modes, grid.count))
     for who, force in lines:
         _add(total, bridge, walkers, who, (force.spacing * force.step_frequency)[None], np.ones((1, 1, len(who))),
-             partial(_tables, force.coefficients[None], force.indices), grid)
+             np.ones((1, len(who)), dtype=bool), partial(_tables, force.coefficients[None], force.indices), grid)
     return total[0] * grid.taper
 
 
-def modal_forces(bridge: Footbridge, walkers: Walkers, parts: Parts, step_frequencies: Array, grid: Grid) -> Array:
+def modal_forces(
+    bridge: Footbridge, walkers: Walkers, parts: Parts, step_frequencies: Array, steps_on: Flags, grid: Grid,
+) -> Array:
     """Modal forces of walkers who step at several frequencies, as `modal_force` gives them one by one.
 
     Parameters
@@ -61,6 +64,8 @@ def modal_forces(bridge: Footbridge, walkers: Walkers, parts: Parts, step_freque
         What their forces are made of, ``walkers.parts()`` [N].
     step_frequencies : array, shape (u, n)
         Step frequencies of all walkers, u times [Hz].
+    steps_on : array of bool, shape (u, n)
+        Whether a walker comes at all.
     grid : Grid
         Times [s].
 
@@ -69,19 +74,17 @@ def modal_forces(bridge: Footbridge, walkers: Walkers, parts: Parts, step_freque
     array, shape (u, n_m, count)
         Modal forces in mass-normalised coordinates [N/√kg].
     """
-    if len(step_frequencies) == 1:      # one table per walker instead of one per part
-        return modal_force(bridge, walkers, [(who, one.at(step_frequencies[0, who])) for who, one in parts], grid)[None]
     total = np.zeros((len(step_frequencies), bridge.n_modes, grid.count))
     for who, force in parts:
         frequencies = step_frequencies[:, who]
         factors = np.stack([force.factors(one) for one in frequencies])
         _add(total, bridge, walkers, who, force.spacing * frequencies, factors,
-             partial(_tables, force.coefficients, force.indices), grid)
+             steps_on[:, who], partial(_tables, force.coefficients, force.indices), grid)
     return total * grid.taper
 
 
 def _add(
-    total: Array, bridge: Footbridge, walkers: Walkers, who: Indices, periods: Array, factors: Array,
+    total: Array, bridge: Footbridge, walkers: Walkers, who: Indices, periods: Array, factors: Array, steps_on: Flags,
     tables: Callable[[Indices], Array], grid: Grid,
 ) -> None:
     """Add the walkers of one force model, some at a time: shapes and tables stay in cache."""
@@ -96,8 +99,8 @@ def _add(
         for part in _blocks(np.arange(len(rows)), WALKERS_AT_ONCE):
             chosen = rows[part]
             deposit(total, first[chosen], *map(np.ascontiguousarray, (
-                shapes[:, part], tables(chosen), factors[:, :, chosen], begin[part] * periods[:, chosen],
-                grid.step * periods[:, chosen])))
+                shapes[:, part], tables(chosen), factors[:, :, chosen], steps_on[:, chosen],
+                begin[part] * periods[:, chosen], grid.step * periods[:, chosen])))
 
 
 def _tables(coefficients: Complex, lines: Indices, rows: Indices) -> Array:

@@ -171,7 +171,7 @@ def _predicted(
     if system.name == "SF":
         return _steady(system, traffic, window, times)
     decay = _slowest_decay(system, found)
-    traffic = relevant(traffic, system.bridge, decay, window, warm_up)
+    traffic = _relevant(traffic, system.bridge, decay, warm_up)
     if system.name == "MC":
         return _stepped(system, traffic, times)
     return _moving(system, traffic, window, times, decay)
@@ -286,18 +286,49 @@ def _within(traffic: Traffic, window: tuple[float, float], times: Array) -> Arra
     return times
 
 
-def relevant(
-    traffic: Traffic, bridge: Footbridge, decay: float, window: tuple[float, float], warm_up: float | None,
-) -> Traffic:
+def _relevant(traffic: Traffic, bridge: Footbridge, decay: float, warm_up: float | None) -> Traffic:
     """Walkers who arrive from one crossing and the warm-up before the window on; all of those made by hand."""
+    if warm_up is None:
+        return traffic.since(first_arrival(traffic, bridge, decay))
     if traffic.drawn_from is None or not len(traffic.walkers):
         return traffic
-    crossing = bridge.length / float(traffic.walkers.speed.min())
-    drawn = window[0] - crossing - traffic.drawn_from
-    if warm_up is not None and warm_up > drawn * (1 + 1e-9):
+    full = _full_deck(traffic, bridge)
+    drawn = full - traffic.drawn_from
+    if warm_up > drawn * (1 + 1e-9):
         raise ValueError(f"warm_up must be at most the {drawn:g} s for which this traffic was drawn, got {warm_up:g}; "
                          "leave it out, or make the traffic by hand")
-    return traffic.since(window[0] - crossing - (settling_time(crossing, decay) if warm_up is None else warm_up))
+    return traffic.since(full - warm_up)
+
+
+def first_arrival(traffic: Traffic, bridge: Footbridge, decay: float) -> float:
+    """When the first of those arrives whom a vibration remembers: one crossing and the warm-up before the window.
+
+    Parameters
+    ----------
+    traffic : Traffic
+        Who walks; nobody is left out if it was made by hand.
+    bridge : Footbridge
+        The bridge.
+    decay : float
+        Decay rate ξω of the slowest vibration [1/s].
+
+    Returns
+    -------
+    float
+        [s]
+    """
+    if traffic.drawn_from is None or not len(traffic.walkers):
+        return float(np.min(traffic.walkers.arrival, initial=traffic.observed(bridge)[0]))
+    return _full_deck(traffic, bridge) - settling_time(_crossing(traffic, bridge), decay)
+
+
+def _full_deck(traffic: Traffic, bridge: Footbridge) -> float:
+    """One crossing before the window: who steps on then is the last to have left when it begins [s]."""
+    return traffic.observed(bridge)[0] - _crossing(traffic, bridge)
+
+
+def _crossing(traffic: Traffic, bridge: Footbridge) -> float:
+    return bridge.length / float(traffic.walkers.speed.min())
 
 
 def _resonances(system: OccupiedBridge) -> Resonances:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfft, rfftfreq
+from scipy.interpolate import CubicSpline
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -16,16 +18,17 @@ from hsictrl.coupling import CondensedCrowd
 from hsictrl.crowd import Traffic, resonant_step_frequency
 from hsictrl.prediction.forces import Parts, modal_forces
 from hsictrl.prediction.grid import Grid, largest
-from hsictrl.prediction.models import predict_tuned, relevant
+from hsictrl.prediction.models import first_arrival, predict_tuned
 from hsictrl.prediction.refusals import check_vertical
 from hsictrl.prediction.spectral import period
 from hsictrl.resonance import effective_map
 
 SHARED_MODELS = ("SF", "MF", "PMC")
+KNOTS = 40     # of the apparent mass in half the width of a resonance
 Complex = NDArray[np.complex128]
 
 
-def tuned_peaks(model: str, bridges: Sequence[Footbridge], traffic: Traffic) -> Array:
+def tuned_peaks(models: Sequence[str], bridges: Sequence[Footbridge], traffic: Traffic) -> Array:
     """Peak accelerations of bridges that differ in frequency, damping and modal mass, each with traffic tuned to it.
 
     What `predict_tuned` finds for each of them, in a fraction of the time. Combs of the walking forces and shapes under
@@ -34,7 +37,7 @@ def tuned_peaks(model: str, bridges: Sequence[Footbridge], traffic: Traffic) -> 
 
     Parameters
     ----------
-    model : {"SF", "MF", "PMC"}
+    models : sequence of {"SF", "MF", "PMC"}
         Stationary force, moving force or pseudo-moving crowd model.
     bridges : sequence of Footbridge
         Empty bridges of one mode, whose deck and shape are the same.
@@ -43,13 +46,13 @@ def tuned_peaks(model: str, bridges: Sequence[Footbridge], traffic: Traffic) -> 
 
     Returns
     -------
-    array, shape (n,)
+    array, shape (models, n)
         Largest absolute accelerations at the antinode over the observed window [m/s²].
 
     Notes
     -----
-    All bridges have the warm-up of the slowest one, and time steps of the one that asks for the finest. That changes
-    what is left of transients, e⁻⁵ of a response at most.
+    Forces are sampled in time as the bridge that asks for the finest steps needs it. Where bridges are tuned to the
+    same step frequency, all have the warm-up of the slowest: that changes what is left of transients, e⁻⁵ at most.
 
     Examples
     --------
@@ -57,19 +60,89 @@ def tuned_peaks(model: str, bridges: Sequence[Footbridge], traffic: Traffic) -> 
     >>> from hsictrl.crowd import CrowdFlow
     >>> bridges = [reference_bridge(frequency=2.0, damping=damping) for damping in (0.005, 0.02)]
     >>> traffic = CrowdFlow(density=0.2).sample(bridges[0], rng=np.random.default_rng(1))
-    >>> tuned_peaks("PMC", bridges, traffic).round(3)
-    array([1.009, 0.643])
+    >>> tuned_peaks(["MF", "PMC"], bridges, traffic).round(2)
+    array([[1.35, 0.8 ],
+           [1.01, 0.64]])
     """
-    check.choice("model", model, SHARED_MODELS)
+    for model in models:
+        check.choice("models", model, SHARED_MODELS)
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
     deck, table = check_alike(bridges), np.array([_properties(bridge.modes[0]) for bridge in bridges])
-    crowd = _crowd(deck, traffic) if model == "PMC" else None
-    if crowd is not None:
-        return _peaks(_signals(deck, traffic, crowd, table))
-    scale, table[:, 2] = 1 / table[:, 2], 1.0     # what does not push back answers in inverse proportion to modal mass
-    systems, of = np.unique(table, axis=0, return_inverse=True)
-    found = _steady(deck, traffic, systems) if model == "SF" else _peaks(_signals(deck, traffic, None, systems))
-    return found[of.ravel()] * scale
+    unit, of = np.unique(table * [1, 1, 0] + [0, 0, 1], axis=0, return_inverse=True)
+    crowd = _crowd(deck, traffic)
+    groups = {"MF": _Group.of(unit, None), "PMC": _Group.of(unit if crowd is None else table, crowd)}
+    moving = {model: groups[model] for model in models if model in groups}
+    found = dict(zip(moving, _peaks(deck, traffic, list(moving.values())), strict=True))
+    if "SF" in models:
+        found["SF"] = _steady(deck, traffic, unit)
+    # what does not push back is found for a modal mass of 1 kg, and answers in inverse proportion to it
+    return np.array([found[model] if len(found[model]) == len(table) and model == "PMC" and crowd
+                     else found[model][of.ravel()] / table[:, 2] for model in models])
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Group:
+    """Systems that carry the same crowd, or none."""
+
+    systems: Array                  # (k, 3): frequency [Hz] and damping of the empty bridge, modal mass [kg]
+    crowd: CondensedCrowd | None    # on a modal mass of 1 kg
+    resonance: Array                # (k): where they resonate [Hz]
+    decay: Array                    # (k): ξω of their slowest vibration [1/s]
+
+    @classmethod
+    def of(cls, systems: Array, crowd: CondensedCrowd | None) -> _Group:
+        resonance, decay = _resonances(systems, crowd)
+        return cls(systems=systems, crowd=crowd, resonance=resonance, decay=decay)
+
+    def peaks(self, force: Array, grid: Grid) -> Array:
+        """Largest accelerations under modal forces, one row per system."""
+        n, growth = period(grid, float(self.decay.min()))
+        spectrum = rfft(force * np.exp(-growth * grid.step * np.arange(grid.count)), n)
+        signals = grid.read(self._accelerance(growth, 2 * np.pi * rfftfreq(n, grid.step)) * spectrum, growth)
+        return np.array([largest(signal) for signal in signals])
+
+    def _accelerance(self, growth: float, omega: Array) -> Complex:
+        """s²/(m (s² + 2ξω s + ω²) + s² S(s)), S being the apparent mass of the crowd, for each system [1/kg]."""
+        s = growth + 1j * omega
+        omega_b, damping, mass = 2 * np.pi * self.systems[:, :1], self.systems[:, 1:2], self.systems[:, 2:]
+        stiffness = mass * (s**2 + 2 * damping * omega_b * s + omega_b**2)
+        if self.crowd is not None:
+            stiffness += s**2 * _apparent_mass(self.crowd, growth, omega)
+        return np.asarray(s**2 / stiffness)
+
+
+def _apparent_mass(crowd: CondensedCrowd, growth: float, omega: Array) -> Complex:
+    """Apparent mass along growth + iω, by a spline with knots close enough for the narrowest resonance of a body."""
+    width = float(np.min(crowd.people.damping * crowd.people.omega))
+    knots = np.linspace(0.0, omega[-1], 4 + int(KNOTS * omega[-1] / width))
+    if len(knots) > len(omega):
+        knots = omega
+    return np.asarray(CubicSpline(knots, crowd.apparent_mass(growth + 1j * knots)[:, 0, 0])(omega))
+
+
+def _peaks(deck: Footbridge, traffic: Traffic, groups: list[_Group]) -> list[Array]:
+    """Largest accelerations of the systems of each group under moving forces, each tuned to its resonance."""
+    if not groups:
+        return []
+    decay = np.concatenate([group.decay for group in groups])
+    tuned, of = np.unique([resonant_step_frequency(f)[0] for group in groups for f in group.resonance],
+                          return_inverse=True)
+    since = np.array([first_arrival(traffic, deck, float(decay[of == u].min())) for u in range(len(tuned))])
+    traffic = traffic.since(float(since.min()))
+    walkers, steps = traffic.walkers, np.array([traffic.tuned(f).walkers.step_frequency for f in tuned])
+    parts = walkers.parts()
+    grid = _grid(traffic, deck, parts, steps, float(max(group.systems[:, 0].max() for group in groups)))
+    force = modal_forces(deck, walkers, parts, steps, walkers.arrival >= since[:, None], grid)[:, 0]
+    of_groups = np.split(of, np.cumsum([len(group.systems) for group in groups])[:-1])
+    return [group.peaks(*_since(force[own], grid, since[own].min()))
+            for group, own in zip(groups, of_groups, strict=True)]
+
+
+def _since(force: Array, grid: Grid, start: float) -> tuple[Array, Grid]:
+    """The forces from some time on, before which there are none."""
+    late = replace(grid, start=max(start, grid.start))
+    return force[:, grid.before - late.before:], late
 
 
 def _steady(deck: Footbridge, traffic: Traffic, systems: Array) -> Array:
@@ -79,30 +152,10 @@ def _steady(deck: Footbridge, traffic: Traffic, systems: Array) -> Array:
     return np.array([predict_tuned("SF", bridge, traffic).peak_acceleration for bridge in bridges])
 
 
-def _peaks(signals: Array) -> Array:
-    return np.array([largest(signal) for signal in signals])
-
-
 def _crowd(deck: Footbridge, traffic: Traffic) -> CondensedCrowd | None:
     """The standing crowd, whose apparent mass on this deck is in kg; none if nobody stands."""
     people, places = traffic.standing_on(deck)
     return CondensedCrowd(people, deck.participation(places)) if len(people) else None
-
-
-def _signals(deck: Footbridge, traffic: Traffic, crowd: CondensedCrowd | None, systems: Array) -> Array:
-    """Accelerations of systems of some frequency, damping and modal mass, each under its own traffic, (systems, m)."""
-    resonance, decay = _resonances(systems, crowd)
-    tuned, of = np.unique([resonant_step_frequency(f)[0] for f in resonance], return_inverse=True)
-    slowest = float(decay.min())
-    traffic = relevant(traffic, deck, slowest, traffic.observed(deck), None)
-    steps = np.array([traffic.tuned(f).walkers.step_frequency for f in tuned])
-    parts = traffic.walkers.parts()
-    grid = _grid(traffic, deck, parts, steps, float(systems[:, 0].max()))
-    n, growth = period(grid, slowest)
-    force = modal_forces(deck, traffic.walkers, parts, steps, grid)[:, 0]
-    spectrum = rfft(force * np.exp(-growth * grid.step * np.arange(grid.count)), n)
-    s = np.asarray(growth + 2j * np.pi * rfftfreq(n, grid.step), dtype=np.complex128)
-    return grid.read(_accelerance(systems, crowd, s) * spectrum[of], growth)
 
 
 def _resonances(systems: Array, crowd: CondensedCrowd | None) -> tuple[Array, Array]:
@@ -117,15 +170,6 @@ def _resonances(systems: Array, crowd: CondensedCrowd | None) -> tuple[Array, Ar
         found[rows] = np.column_stack([frequency[i, j], damping[i, j]])
     bodies = np.min(crowd.people.damping * crowd.people.omega)
     return found[:, 0], np.minimum(bodies, 2 * np.pi * found.prod(axis=1))
-
-
-def _accelerance(systems: Array, crowd: CondensedCrowd | None, s: Complex) -> Complex:
-    """s²/(m (s² + 2ξω s + ω²) + s² S(s)) of each system, S being the apparent mass of the crowd [1/kg]."""
-    omega, damping, mass = 2 * np.pi * systems[:, :1], systems[:, 1:2], systems[:, 2:]
-    stiffness = mass * (s**2 + 2 * damping * omega * s + omega**2)
-    if crowd is not None:
-        stiffness += s**2 * crowd.apparent_mass(s)[:, 0, 0]
-    return np.asarray(s**2 / stiffness)
 
 
 def _grid(traffic: Traffic, deck: Footbridge, parts: Parts, steps: Array, highest: float) -> Grid:
