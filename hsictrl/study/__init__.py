@@ -11,9 +11,10 @@ Source: Van Nimmen et al. (2017), section 2.3.
 
 from hsictrl.study.batches import TrialError, trial_rng
 from hsictrl.study.ensembles import Ensemble, History
+from hsictrl.study.estimates import Estimates
 from hsictrl.study.ledger import ChangedStudyError, Ledger
 from hsictrl.study.rules import AllRules, Judgement, MeanRule, PercentileRule, StopRule
-from hsictrl.study.sweeps import Estimates, Sweep, sweep
+from hsictrl.study.sweeps import Sweep, sweep
 from hsictrl.study.trials import checkpoints, monte_carlo
 
 __all__ = [

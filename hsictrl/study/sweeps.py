@@ -20,6 +20,7 @@ from hsictrl._checks import Array
 from hsictrl._progress import progress
 from hsictrl.study.batches import Trial, TrialError
 from hsictrl.study.ensembles import Ensemble
+from hsictrl.study.estimates import Axes, Estimates, Value, place_of
 from hsictrl.study.ledger import Ledger
 from hsictrl.study.ratios import ratios
 from hsictrl.study.rules import PercentileRule, StopRule
@@ -27,67 +28,6 @@ from hsictrl.study.trials import PAPER_RULE, check_callable, check_study, settle
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Value = int | float | str
-Axes = dict[str, tuple[Value, ...]]
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Estimates:
-    """Estimates and their intervals, an axis per name.
-
-    Parameters
-    ----------
-    axes : dict
-        The values of each axis by its name, in order.
-    estimate, low, high : ndarray
-        Estimates and ends of their intervals, one dimension per axis [unit of the estimates].
-
-    Examples
-    --------
-    >>> masses = np.array([70.0, 80.0])
-    >>> found = Estimates(axes={"mass": (70, 80)}, estimate=masses, low=masses - 1, high=masses + 1)
-    >>> float(found.at({"mass": 80}).low)
-    79.0
-    """
-
-    axes: Axes
-    estimate: Array
-    low: Array
-    high: Array
-
-    def __post_init__(self) -> None:
-        check.freeze(self.estimate, self.low, self.high)
-
-    def at(self, point: Mapping[str, Value]) -> Estimates:
-        """Pick one value of each of some axes.
-
-        Parameters
-        ----------
-        point : mapping
-            A value, exactly as it stands on the axis, by the name of its axis.
-
-        Returns
-        -------
-        Estimates
-            The same over the other axes [unit of the estimates].
-
-        Examples
-        --------
-        >>> lengths = np.array([20.0, 30.0])
-        >>> found = Estimates(axes={"span": ("side", "main")}, estimate=lengths, low=lengths, high=lengths)
-        >>> float(found.at({"span": "main"}).estimate)
-        30.0
-        """
-        check.instance("point", point, Mapping, "give a dict of axes and one value of each")
-        place: list[int | slice] = [slice(None)] * len(self.axes)
-        for name, value in point.items():
-            check.choice("axis", name, list(self.axes))
-            place[list(self.axes).index(name)] = _index(self.axes, name, value)
-        axes = {name: values for name, values in self.axes.items() if name not in point}
-        estimate, low, high = (array[tuple(place)] for array in (self.estimate, self.low, self.high))
-        return Estimates(axes=axes, estimate=estimate, low=low, high=high)
 
 
 @final
@@ -198,7 +138,7 @@ class Sweep:
         """
         check.choice("axis", axis, self.shared)
         rule = check.instance("rule", self.ensembles[0].rule, PercentileRule, "sweep with PercentileRule(...)")
-        places = [_index(self.axes, axis, value) for value in (top, bottom)]
+        places = [place_of(self.axes, axis, value) for value in (top, bottom)]
         found = [ratios(rule, *self._along(axis, one.samples, places)) for one in self.ensembles]
         kept = {name: values for name, values in self.axes.items() if name != axis}
         estimate, low, high = (np.reshape(end, _shape(kept)) for end in zip(*found, strict=True))
@@ -347,13 +287,6 @@ def _told(value: Value) -> str:
 
 def _shape(axes: Axes) -> tuple[int, ...]:
     return tuple(map(len, axes.values()))
-
-
-def _index(axes: Axes, name: str, value: Value) -> int:
-    if value not in axes[name]:
-        values = ", ".join(map(repr, axes[name]))
-        raise ValueError(f"{name} must be one of {values}, got {value!r}; choose one of these")
-    return axes[name].index(value)
 
 
 def _axes(kind: str, given: Any) -> Axes:
