@@ -22,10 +22,12 @@ bench: .venv/.tools    ## ours, the host's road, and the ratio, in one run on on
 docs: .venv/.tools     ## the documentation, into docs/_build/html
 	$(BIN)/sphinx-build -q -W docs docs/_build/html
 
+# ledgers of a run that was stopped are gone on with; delete them after a change of the code that a trial calls
 paper: .venv/.tools    ## run the studies of the paper anew and replace their committed results
 	for study in $(STUDIES); do \
-		$(BIN)/hsictrl paper $$study --recompute --processes 2 --output hsictrl/paper/results || exit 1; \
+		$(BIN)/hsictrl paper $$study --recompute --resume --processes 2 --output hsictrl/paper/results || exit 1; \
 	done
+	rm -f hsictrl/paper/results/*.ledger
 
 .venv/.core: pyproject.toml
 	$(PYTHON) -m venv .venv

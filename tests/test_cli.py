@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+from functools import partial
 from types import SimpleNamespace
 
 import control as ct
@@ -22,6 +23,7 @@ import hsictrl as hsi
 from hsictrl import assessment, paper
 from hsictrl.cli import app, files
 from hsictrl.cli.workers import workers
+from hsictrl.paper import load_cycles
 from hsictrl.prediction import predict_tuned
 
 QUICK = ["--density", "0.2", "--tolerance", "0.5"]
@@ -363,12 +365,13 @@ def stand_in(monkeypatch):
     """A figure and a table in place of the real ones."""
     rows = [{"case": "a", "f_hz": 1.23456, "n": 3, "more": 1.0}, {"case": "b", "f_hz": None, "n": 4, "more": 2.0}]
 
-    def compute(name, recompute=False, executor=None):
+    def compute(name, recompute=False, executor=None, ledger=None, grid="coarse"):
         draw = None if name == "claims" else lambda: ct.ControlPlot([[]], [[]], Figure())
         return paper.Report(name=name, rows=rows, columns=["case", "f_hz", "n"], draw=draw,
-                            caption=f"recompute {recompute}, executor {executor}")
+                            caption=f"recompute {recompute}, grid {grid}, ledger {ledger and ledger.path.name}, "
+                                    f"executor {executor}")
     monkeypatch.setattr(paper, "compute", compute)
-    monkeypatch.setattr(paper, "names", lambda: ("fig3", "claims"))
+    monkeypatch.setattr(paper, "names", lambda: ("fig3", "fig9", "claims"))
     return rows
 
 
@@ -379,7 +382,7 @@ def test_paper_writes_the_figure_and_its_numbers(stand_in, tmp_path):
     assert result.stderr == f"wrote {tmp_path / 'fig3.png'}\nwrote {tmp_path / 'fig3.json'}\n"
     assert re.search(r"a +1\.235 +3\n", result.stdout)
     assert re.search(r"b +– +4\n", result.stdout)
-    assert "recompute False, executor None" in result.stdout
+    assert "recompute False, grid coarse, ledger None, executor None" in result.stdout
     assert "more" not in result.stdout
 
 
@@ -397,7 +400,7 @@ def test_paper_claims_prints_and_writes_nothing(stand_in, tmp_path):
 
 def test_paper_writes_the_numbers_of_a_study_without_a_figure(monkeypatch, tmp_path):
     rows = [{"case": "a", "f_hz": 1.5}]
-    monkeypatch.setattr(paper, "compute", lambda name, recompute, executor: paper.Report(
+    monkeypatch.setattr(paper, "compute", lambda name, **how: paper.Report(
         name=name, rows=rows, columns=["case"], caption="", study=True))
     result = run("paper", "table2", "--output", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["table2.json"]
@@ -407,8 +410,62 @@ def test_paper_writes_the_numbers_of_a_study_without_a_figure(monkeypatch, tmp_p
 
 @pytest.mark.usefixtures("stand_in")
 def test_paper_recomputes_in_processes():
-    assert re.search(r"recompute True, executor <concurrent.futures.process.ProcessPoolExecutor",
+    assert re.search(r"recompute True, .* executor <concurrent.futures.process.ProcessPoolExecutor",
                      run("paper", "claims", "--recompute", "--processes", 2).stdout)
+
+
+@pytest.mark.usefixtures("stand_in")
+@pytest.mark.parametrize(("words", "says"), [
+    ("claims", "grid coarse, ledger None"), ("claims --recompute", "grid coarse, ledger claims.ledger"),
+    ("claims --recompute --ledger TMP/other", "grid coarse, ledger other"),
+    ("claims --recompute --resume", "ledger claims.ledger"),
+    ("fig3 --recompute", "recompute True, grid coarse, ledger None"),
+    ("fig9 --recompute --grid paper", "recompute True, grid paper, ledger fig9.ledger"),
+])
+def test_paper_keeps_the_trials_of_a_study_and_chooses_its_cells(words, says, tmp_path):
+    assert says in run("paper", *words.replace("TMP", str(tmp_path)).split(), "--output", tmp_path).stdout
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Two spans, four trials each; lists the trials that were run."""
+    ran = []
+    last_step = load_cycles._last_step
+    monkeypatch.setattr(load_cycles, "LENGTHS", (5.0, 10.0))
+    monkeypatch.setattr(load_cycles, "study", partial(load_cycles.study, max_trials=4))
+    monkeypatch.setattr(load_cycles, "_last_step", lambda moving: ran.append(moving) or last_step(moving))
+    return ran
+
+
+def test_an_interrupted_study_of_the_paper_goes_on_to_the_same_rows(short, monkeypatch, tmp_path):
+    words, book = ["paper", "load_cycles", "--recompute", "--output", tmp_path], tmp_path / "load_cycles.ledger"
+
+    def interrupted(moving):
+        if len(short) == 6:     # in the second span
+            raise KeyboardInterrupt
+        return counted(moving)
+    counted = load_cycles._last_step
+    with monkeypatch.context() as patch:
+        patch.setattr(load_cycles, "_last_step", interrupted)
+        run(*words, code=130)
+    assert hsi.Ledger(book).trials()["load cycles, 5 m"] == 4
+    kept = sum(hsi.Ledger(book).trials().values())
+    assert kept < 8
+
+    assert run(*words, code=2).stderr == (
+        f"Error: the ledger must be a new file, got {book}, which holds {kept} trials; give --resume to go on with them, "
+        "or choose another file by --ledger\n")
+    short.clear()
+    run(*words, "--resume")
+    assert len(short) == 8 - kept
+    assert hsi.Ledger(book).trials() == {"load cycles, 5 m": 4, "load cycles, 10 m": 4}
+    alone = paper.compute("load_cycles", recompute=True).rows       # with NaN: four trials bound no percentile
+    assert (tmp_path / "load_cycles.json").read_text() == json.dumps(alone, indent=1) + "\n"
+
+
+def test_a_table_without_a_study_makes_no_ledger(tmp_path):
+    run("paper", "table1", "--recompute", "--output", tmp_path)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkeypatch):
@@ -467,6 +524,13 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("paper fig99", "name must be one of 'table1', 'table2', 'readings', 'load_cycles', 'fig1', 'fig2', 'fig3', "
                     "'fig4', 'fig8', 'claims', got 'fig99'; choose"),
     ("paper fig3 --output TMP/no", "the output folder must exist, got TMP/no; make it first"),
+    ("paper table2 --ledger TMP/a.ledger", "--ledger and --resume must come with a study that runs anew, got table2; "
+     "add --recompute, or leave them out"),
+    ("paper table2 --resume", "must come with a study that runs anew, got table2; add --recompute"),
+    ("paper table1 --recompute --resume", "must come with a study that runs anew, got table1; leave them out"),
+    ("paper fig4 --recompute --ledger TMP/no/a.ledger", "the folder of a ledger must exist, got TMP/no; make it first"),
+    ("paper table2 --recompute --ledger TMP/bad.toml", "a ledger must be a file made by hsictrl, got TMP/bad.toml"),
+    ("paper table2 --grid paper", "--grid must come with one of fig9, fig10, fig11, got table2; leave it out"),
     ("paper fig3 --processes 0", "processes must be at least 1, got 0"),
 ])
 def test_refusals(tmp_path, words, says):

@@ -375,7 +375,8 @@ def test_an_empty_file_becomes_a_ledger(tmp_path: Path) -> None:
     ("words", "message"),
     [
         (["--resume"], "--resume must come with the ledger to go on with, got none; add --ledger FILE"),
-        (["--ledger", "BOOK"], "--ledger must be a new file, got BOOK, which holds 100 trials; add --resume to go on"),
+        (["--ledger", "BOOK"], "the ledger must be a new file, got BOOK, which holds 100 trials; give --resume to go "
+         "on with them, or choose another file by --ledger"),
         (["--ledger", "BOOK", "--resume", "--damping", "0.01"],
          "'0.2 persons/m², effective' changed: trial.bridge.modes[0].damping 0.005 → 0.01; choose a new file"),
         (["--ledger", "BOOK", "--resume", "--seed", "2"], "changed: seed 1 → 2; choose a new file"),

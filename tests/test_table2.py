@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import product
 from types import ModuleType
@@ -21,10 +22,10 @@ import pytest
 
 import hsictrl as hsi
 from hsictrl import paper
-from hsictrl.paper import claims_fig8, claims_table2, fig8, load_cycles, readings, table2
+from hsictrl.paper import claims_fig8, claims_table2, fig4, fig8, load_cycles, readings, studies, table2
 from hsictrl.paper.cells import CELLS, DEFAULT, Cell, Reading, SharedTrafficTrial
 from hsictrl.paper.intervals import Interval, percentile, ratio, verdict
-from hsictrl.paper.reports import Finding, Rows, committed
+from hsictrl.paper.reports import Finding, Rows, Run, committed
 
 MODELS = ("SF", "MF", "MFAM", "PMC", "MC")
 # Table 2, typed from the paper: percent over MC; three natural frequencies of case 1, then of case 2
@@ -176,7 +177,7 @@ def test_the_name_of_a_reading_tells_all_its_changes() -> None:
                    for field in ("damping", "modal_mass", "warm_up", "tuned_to")) for reading in readings.READINGS]
     assert changed == [0, *(len(reading.name.split(", ")) for reading in readings.READINGS[1:])]
     assert max(changed) == 2
-    caption = readings.report(False, None).caption
+    caption = readings.report(Run()).caption
     assert "each changing what its name says of the default (ξ_B 0.5 %, m_B 25 t" in caption
     assert "one change" not in caption
 
@@ -215,9 +216,32 @@ def test_committed_readings_are_sorted_and_complete() -> None:
 @pytest.mark.parametrize("recipe", [table2, readings, load_cycles, fig8])
 def test_recompute_runs_the_study_where_it_is_told(recipe: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recipe, "study", lambda *given: [{"given": given}])
-    assert recipe.report(True, "executor").rows[0]["given"][-1] == "executor"
-    assert recipe.report(False, None).rows == committed(recipe.__name__.split(".")[-1])
-    assert recipe.report(False, None).study
+    executor, ledger = ThreadPoolExecutor(1), hsi.Ledger("not_made.ledger")
+    report = recipe.report(Run(recompute=True, executor=executor, ledger=ledger))
+    assert report.rows[0]["given"][-2:] == (executor, ledger)
+    assert recipe.report(Run()).rows == committed(recipe.__name__.split(".")[-1])
+    assert recipe.report(Run()).study
+
+
+SIZES = {SharedTrafficTrial: 5, fig8.ForcesTrial: 6, load_cycles.LoadCyclesTrial: 3, fig4.SharedCrowdTrial: 2 * 51 * 3}
+
+
+def test_all_studies_share_one_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under as many labels as there are studies: figure 4, table 2, figure 8, spans, readings."""
+    labels, ledger = [], hsi.Ledger("not_made.ledger")
+
+    def made_up(trial: Callable, *, rule: hsi.StopRule, label: str, **how: object) -> hsi.Ensemble:
+        assert how["ledger"] is ledger
+        labels.append(label)
+        samples = np.random.default_rng(1).uniform(1.0, 2.0, (20, SIZES[type(trial)]))
+        judged = rule.judge(samples)
+        return hsi.Ensemble(samples=samples, estimate=judged.estimate, interval=judged.interval, converged=False,
+                            reason="", seed=1, rule=rule)
+    for module in (fig4, readings, studies):
+        monkeypatch.setattr(module, "monte_carlo", made_up)
+    for name in ("claims", "readings"):
+        paper.compute(name, recompute=True, ledger=ledger)
+    assert len(set(labels)) == len(labels) == 4 + 12 + 12 + 4 + 9 * 12
 
 
 @pytest.mark.parametrize("trial", [

@@ -51,8 +51,8 @@ def checked_ledger(path: Path | None, resume: bool) -> Ledger | None:
     ledger = Ledger(path)
     held = sum(ledger.trials().values())
     if held and not resume:
-        raise ValueError(f"--ledger must be a new file, got {path}, which holds {held} trials; add --resume to go on "
-                         "with them, or choose another file")
+        raise ValueError(f"the ledger must be a new file, got {path}, which holds {held} trials; give --resume to go "
+                         "on with them, or choose another file by --ledger")
     return ledger
 
 

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
 from importlib.resources import files
 
 from hsictrl.paper import claims_fig3, claims_fig4, claims_fig8, claims_table2, fig4, fig8, load_cycles, table2
-from hsictrl.paper.reports import Finding, Report, Rows
+from hsictrl.paper.reports import Finding, Report, Rows, Run
 
 VERDICTS = {True: "holds", False: "fails", None: "undecided"}
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """All claims that have a criterion and a finding."""
-    findings = _findings(*(study.report(recompute, executor).rows for study in (fig4, table2, load_cycles, fig8)))
+    findings = _findings(*(study.report(run).rows for study in (fig4, table2, load_cycles, fig8)))
     rows: Rows = [_row(claim, *findings[claim["id"]]()) for claim in _claims()]
     held = sum(row["verdict"] == "holds" for row in rows)
     return Report(name="claims", rows=rows, columns=["id", "where", "says", "measured", "verdict", "reason"],

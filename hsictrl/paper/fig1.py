@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
-
 import control as ct
 import numpy as np
 
 from hsictrl.bridge import reference_bridge
 from hsictrl.crowd import Traffic, Walker, Walkers
-from hsictrl.paper.reports import Report
+from hsictrl.paper.reports import Report, Run
 from hsictrl.walking import ZivanovicForce
 
 BRIDGE, TIME = reference_bridge(), 36.0
@@ -19,7 +17,7 @@ TRAFFIC = Traffic(Walkers.of(
 COLUMNS = ["x_m", "m_h1_kg", "m_h0_kg", "k_h1_n_per_m", "c_h1_ns_per_m", "f_h1_hz", "xi_h1", "step_frequency_hz"]
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """One row per walker that is drawn."""
     return Report(name="fig1", rows=[_row(i) for i in range(len(TRAFFIC.walkers))], columns=COLUMNS, draw=_draw,
                   caption=f"Fig. 1: walkers on the reference bridge at {TIME:g} s, their bodies, and the step "

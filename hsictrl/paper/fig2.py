@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
 from typing import Any
 
 import control as ct
@@ -10,7 +9,7 @@ import control as ct
 from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.coupling import moving_crowd
 from hsictrl.crowd import Traffic
-from hsictrl.paper.reports import Report, Rows
+from hsictrl.paper.reports import Report, Rows, Run
 from hsictrl.paper.table1 import traffic
 from hsictrl.prediction import ASSUMPTIONS, Assumptions
 
@@ -32,7 +31,7 @@ def scene(row: Assumptions, bridge: Footbridge, walkers: Traffic, time: float) -
             "bodies_at_m": [] if bodies is None else bodies[:, 0].tolist(), "bodies_move": bodies_move}
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """One row per panel."""
     rows = [{"model": model, "name": row.name, "order": row.order, "time_variant": row.time_variant,
              **scene(row, BRIDGE, WALKERS, TIME)} for model, row in ASSUMPTIONS.items()]

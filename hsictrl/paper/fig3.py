@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
-
 import control as ct
 import numpy as np
 
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.coupling import OccupiedBridge, couple
-from hsictrl.paper.reports import Report
+from hsictrl.paper.reports import Report, Run
 from hsictrl.pedestrian import Pedestrian
 from hsictrl.resonance import effective, frf
 
@@ -37,7 +35,7 @@ def occupied(mass_ratio: float, frequency_ratio: float) -> OccupiedBridge:
     return couple(bridge, BODY, (np.arange(n) + 0.5) * bridge.length / n)
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """The ten curves; they take milliseconds, so they are always computed anew."""
     rows = [_row(mass, frequency) for mass in MASS_RATIOS for frequency in FREQUENCY_RATIOS]
     return Report(name="fig3", rows=rows, columns=COLUMNS, draw=_draw, caption=(

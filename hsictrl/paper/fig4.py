@@ -16,9 +16,9 @@ from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.coupling import CondensedCrowd
 from hsictrl.crowd import CrowdFlow
 from hsictrl.paper.fig3 import persons_of
-from hsictrl.paper.reports import Report, Rows, committed, rounded
+from hsictrl.paper.reports import Report, Rows, Run, committed, rounded
 from hsictrl.resonance import effective_map
-from hsictrl.study import Ensemble, StopRule, checkpoints, monte_carlo
+from hsictrl.study import Ensemble, Ledger, StopRule, checkpoints, monte_carlo
 
 MASS_RATIOS, DAMPINGS = (0.05, 0.1, 0.2, 0.3), (0.002, 0.005, 0.02)
 FREQUENCIES = tuple(np.linspace(1.0, 6.0, 51).round(3).tolist())
@@ -66,21 +66,21 @@ def flow_of(mass_ratio: float, bridge: Footbridge) -> CrowdFlow:
     return CrowdFlow(persons=persons_of(mass_ratio, bridge))
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """All cells: 4 mass ratios × 3 dampings × 51 frequencies."""
-    rows = _study(executor) if recompute else committed("fig4")
+    rows = _study(run.executor, run.ledger) if run.recompute else committed("fig4")
     return Report(name="fig4", rows=rows, columns=COLUMNS, draw=lambda: _draw(rows), caption=(
         "Fig. 4: f_eff/f_B and ξ_eff (eq. 17) of the reference bridge under random crowds, N(3.25, 0.32) Hz, "
         "N(0.30, 0.05), uniform on the deck; a crowd is shared by all bridges of its mass ratio; trials: number at "
         "which mean, 5 % and 95 % of both have settled to ±5 % at 95 % confidence"))
 
 
-def _study(executor: Executor | None) -> Rows:
+def _study(executor: Executor | None, ledger: Ledger | None) -> Rows:
     rows: Rows = []
     for mass_ratio in MASS_RATIOS:
         trial = SharedCrowdTrial(mass_ratio=mass_ratio)
         ensemble = monte_carlo(trial, rule=effective_rule(), seed=SEED, executor=executor,
-                               label=f"fig4, mass ratio {mass_ratio:g}")
+                               label=f"fig4, mass ratio {mass_ratio:g}", ledger=ledger)
         rows.extend(_rows(mass_ratio, ensemble))
     return rows
 

@@ -15,11 +15,11 @@ from hsictrl._checks import Array
 from hsictrl.crowd import Traffic
 from hsictrl.paper.cells import CELLS, DEFAULT, DENSITIES, FREQUENCIES, SPREADS, Cell
 from hsictrl.paper.intervals import Interval, percentile, ratio
-from hsictrl.paper.reports import Report, Rows, committed
+from hsictrl.paper.reports import Report, Rows, Run, committed
 from hsictrl.paper.studies import study_each
 from hsictrl.paper.table2 import cell_of
 from hsictrl.prediction import predict_tuned
-from hsictrl.study import Ensemble, PercentileRule
+from hsictrl.study import Ensemble, Ledger, PercentileRule
 from hsictrl.walking import WalkingForce, YoungForce, ZivanovicForce
 
 FORCES: dict[str, WalkingForce] = {
@@ -63,9 +63,9 @@ class ForcesTrial:
         return {name: self.cell.flow.sample(bridge, rng=deepcopy(rng), force=force) for name, force in FORCES.items()}
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """Twelve cells, two models, three forces."""
-    rows = study(CELLS, executor) if recompute else committed("fig8")
+    rows = study(CELLS, run.executor, run.ledger) if run.recompute else committed("fig8")
     return Report(name="fig8", rows=rows, columns=COLUMNS, draw=lambda: _draw(rows), study=True, caption=(
         f"Fig. 8: a95 of the peak acceleration, ξ_B {100 * DEFAULT.damping:g} %, m_B {DEFAULT.modal_mass:g} kg, for "
         "the narrow-band force, for Young's periodic force (white in the figure), and for the walkers of the "
@@ -74,10 +74,13 @@ def report(recompute: bool, executor: Executor | None) -> Report:
         f"{MAX_TRIALS}"))
 
 
-def study(cells: Sequence[Cell], executor: Executor | None = None, *, max_trials: int = MAX_TRIALS) -> Rows:
+def study(
+    cells: Sequence[Cell], executor: Executor | None = None, ledger: Ledger | None = None, *,
+    max_trials: int = MAX_TRIALS,
+) -> Rows:
     """Run the trials of some cells."""
     return study_each(cells, lambda cell: ForcesTrial(cell=cell), _rows, label="fig8, {}", rule=RULE, seed=SEED,
-                      executor=executor, max_trials=max_trials)
+                      executor=executor, max_trials=max_trials, ledger=ledger)
 
 
 def _rows(cell: Cell, ensemble: Ensemble) -> Rows:

@@ -13,10 +13,10 @@ from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.crowd import CrowdFlow, weidmann_speed
 from hsictrl.paper.intervals import RULE, percentile, ratio
-from hsictrl.paper.reports import Report, Rows, committed, rounded
+from hsictrl.paper.reports import Report, Rows, Run, committed, rounded
 from hsictrl.paper.studies import study_each
 from hsictrl.prediction import Prediction, predict
-from hsictrl.study import Ensemble
+from hsictrl.study import Ensemble, Ledger
 from hsictrl.walking import ZivanovicForce
 
 LENGTHS = (50.0, 100.0, 200.0, 400.0)
@@ -71,19 +71,22 @@ def _last_step(moving: Prediction) -> float:
     return float(acceleration[..., time > time[-1] - 1 / FREQUENCY].max())
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """One row per span."""
-    rows = study(LENGTHS, executor) if recompute else committed("load_cycles")
+    rows = study(LENGTHS, run.executor, run.ledger) if run.recompute else committed("load_cycles")
     return Report(name="load_cycles", rows=rows, columns=COLUMNS, study=True, caption=(
         f"SF over MF, one step frequency (case 2), {FREQUENCY:g} Hz, ξ_B {100 * DAMPING:g} %, m_B {MODAL_MASS:g} kg, "
         f"{PERSONS} persons at {SPEED:.3g} m/s, periodic forces for both; load cycles L f_s/v_s of a crossing; "
         "instant: over MF's peak in the last step of the window, when one crowd is on the deck"))
 
 
-def study(lengths: Sequence[float], executor: Executor | None = None, *, max_trials: int = MAX_TRIALS) -> Rows:
+def study(
+    lengths: Sequence[float], executor: Executor | None = None, ledger: Ledger | None = None, *,
+    max_trials: int = MAX_TRIALS,
+) -> Rows:
     """Run the trials of some spans."""
     return study_each(lengths, lambda length: LoadCyclesTrial(length=length), _rows, label="load cycles, {:g} m",
-                      rule=RULE, seed=SEED, executor=executor, max_trials=max_trials)
+                      rule=RULE, seed=SEED, executor=executor, max_trials=max_trials, ledger=ledger)
 
 
 def _rows(length: float, ensemble: Ensemble) -> Rows:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, final
 
 import numpy as np
@@ -12,10 +13,10 @@ import numpy as np
 from hsictrl._checks import Array
 from hsictrl.paper.cells import CELLS, DEFAULT, Cell, Reading, SharedTrafficTrial
 from hsictrl.paper.intervals import Interval, ratio
-from hsictrl.paper.reports import Report, Rows, committed, rounded
+from hsictrl.paper.reports import Report, Rows, Run, committed, rounded
 from hsictrl.paper.table2 import SEED, printed
 from hsictrl.prediction import MODELS
-from hsictrl.study import PercentileRule, monte_carlo
+from hsictrl.study import Ensemble, Ledger, PercentileRule, monte_carlo
 
 TRIALS = 24
 NEVER = PercentileRule(tolerance=1e-12)    # no percentile settles to that: all readings get the same trials
@@ -65,9 +66,9 @@ class Compared:
         return self.ratio.low <= self.printed <= self.ratio.high
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """A row per reading, the closest first."""
-    rows = study(READINGS, CELLS, executor) if recompute else committed("readings")
+    rows = study(READINGS, CELLS, run.executor, run.ledger) if run.recompute else committed("readings")
     return Report(name="readings", rows=rows, columns=COLUMNS, study=True, caption=(
         "Readings of section 4.1 beside table 2, each changing what its name says of the default (ξ_B "
         f"{100 * DEFAULT.damping:g} %, m_B {DEFAULT.modal_mass / 1e3:g} t, warm-up max(T, 5/(ξω)), each model tuned "
@@ -77,16 +78,18 @@ def report(recompute: bool, executor: Executor | None) -> Report:
 
 
 def study(
-    readings: Sequence[Reading], cells: Sequence[Cell], executor: Executor | None = None, *, trials: int = TRIALS,
+    readings: Sequence[Reading], cells: Sequence[Cell], executor: Executor | None = None, ledger: Ledger | None = None,
+    *, trials: int = TRIALS,
 ) -> Rows:
     """Run the same trials for all readings."""
-    rows = [_row(reading, cells, executor, trials) for reading in readings]
+    run_trials = partial(monte_carlo, rule=NEVER, seed=SEED, executor=executor, max_trials=trials, ledger=ledger)
+    rows = [_row(reading, [one for cell in cells for one in _compared(reading, cell, run_trials)], trials)
+            for reading in readings]
     return sorted(rows, key=lambda row: row["median_deviation"])
 
 
-def _row(reading: Reading, cells: Sequence[Cell], executor: Executor | None, trials: int) -> dict[str, Any]:
+def _row(reading: Reading, compared: list[Compared], trials: int) -> dict[str, Any]:
     """How far one reading is from the printed table."""
-    compared = [one for cell in cells for one in _compared(reading, cell, executor, trials)]
     worst = max(compared, key=lambda one: abs(one.deviation))
     return {"reading": reading.name, "xi_b": reading.damping, "m_b_kg": reading.modal_mass,
             "warm_up_s": reading.warm_up, "tuned_to": reading.tuned_to, "trials": trials,
@@ -95,10 +98,9 @@ def _row(reading: Reading, cells: Sequence[Cell], executor: Executor | None, tri
             "ratios": len(compared), **_medians(compared)}
 
 
-def _compared(reading: Reading, cell: Cell, executor: Executor | None, trials: int) -> list[Compared]:
+def _compared(reading: Reading, cell: Cell, run_trials: Callable[..., Ensemble]) -> list[Compared]:
     """The ratios of one cell."""
-    ensemble = monte_carlo(SharedTrafficTrial(cell=cell, reading=reading), rule=NEVER, seed=SEED, executor=executor,
-                           max_trials=trials, label=f"readings, {reading.name}, {cell}")
+    ensemble = run_trials(SharedTrafficTrial(cell=cell, reading=reading), label=f"readings, {reading.name}, {cell}")
     peaks: dict[str, Array] = dict(zip(MODELS, ensemble.samples.T, strict=True))
     return [Compared(cell=cell, model=model, ratio=ratio(peaks[model], peaks["MC"]), printed=printed(cell, model)[1])
             for model in COMPARED]

@@ -7,12 +7,16 @@ from concurrent.futures import Executor
 
 from hsictrl import _checks as check
 from hsictrl.paper import claims, fig1, fig2, fig3, fig4, fig8, load_cycles, readings, table1, table2
-from hsictrl.paper.reports import Report
+from hsictrl.paper.maps import GRIDS
+from hsictrl.paper.reports import Report, Run
+from hsictrl.study import Ledger
 
-RECIPES: dict[str, Callable[[bool, Executor | None], Report]] = {
+RECIPES: dict[str, Callable[[Run], Report]] = {
     "table1": table1.report, "table2": table2.report, "readings": readings.report, "load_cycles": load_cycles.report,
     "fig1": fig1.report, "fig2": fig2.report, "fig3": fig3.report, "fig4": fig4.report, "fig8": fig8.report,
     "claims": claims.report}
+AT_ONCE = ("table1", "fig1", "fig2", "fig3")    # need no study
+ON_GRID = ("fig9", "fig10", "fig11")            # maps, whose cells are a choice
 
 
 def names() -> tuple[str, ...]:
@@ -30,7 +34,10 @@ def names() -> tuple[str, ...]:
     return tuple(RECIPES)
 
 
-def compute(name: str, *, recompute: bool = False, executor: Executor | None = None) -> Report:
+def compute(
+    name: str, *, recompute: bool = False, executor: Executor | None = None, ledger: Ledger | None = None,
+    grid: str = "coarse",
+) -> Report:
     """Reproduce a table or figure of the paper, or evaluate its claims.
 
     Parameters
@@ -41,6 +48,10 @@ def compute(name: str, *, recompute: bool = False, executor: Executor | None = N
         Whether to run studies anew rather than read their committed results.
     executor : concurrent.futures.Executor, optional
         Where trials run; in place if not given.
+    ledger : Ledger, optional
+        Keeps the trials of studies that run anew, and gives those that it holds in place of running them again.
+    grid : {"coarse", "paper"}
+        Which cells the maps of figures 9 to 11 take.
 
     Returns
     -------
@@ -51,4 +62,10 @@ def compute(name: str, *, recompute: bool = False, executor: Executor | None = N
     >>> compute("fig3").columns[:2]
     ['mass_ratio', 'frequency_ratio']
     """
-    return RECIPES[check.choice("name", name, names())](recompute, executor)
+    recipe = RECIPES[check.choice("name", name, names())]
+    return recipe(Run(recompute=recompute, executor=executor, ledger=ledger, grid=checked_grid(grid)))
+
+
+def checked_grid(grid: str) -> str:
+    """Return the grid if there is one of that name."""
+    return check.choice("grid", grid, tuple(GRIDS))

@@ -4,15 +4,46 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, final
 
 import control as ct
 
+from hsictrl.study import Ledger
+
 Rows = list[dict[str, Any]]
 # what was measured, whether the criterion holds (None: the interval does not tell), and why not if it does not
 Finding = tuple[str, bool | None, str]
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """How a reproduction is made.
+
+    Parameters
+    ----------
+    recompute : bool
+        Whether to run studies anew rather than read their committed results.
+    executor : concurrent.futures.Executor, optional
+        Where trials run; in place if not given.
+    ledger : Ledger, optional
+        Keeps the trials of studies that run anew.
+    grid : {"coarse", "paper"}
+        Which cells the maps of figures 9 to 11 take.
+
+    Examples
+    --------
+    >>> Run().recompute, Run(grid="paper").grid
+    (False, 'paper')
+    """
+
+    recompute: bool = False
+    executor: Executor | None = None
+    ledger: Ledger | None = None
+    grid: str = "coarse"
 
 
 @final

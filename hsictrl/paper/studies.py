@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from typing import TypeVar
 
 from hsictrl.paper.reports import Rows
-from hsictrl.study import Ensemble, StopRule, monte_carlo
+from hsictrl.study import Ensemble, Ledger, StopRule, monte_carlo
 from hsictrl.study.batches import Trial
 
 Case = TypeVar("Case")
@@ -15,7 +15,7 @@ Case = TypeVar("Case")
 
 def study_each(
     cases: Iterable[Case], trial: Callable[[Case], Trial], rows: Callable[[Case, Ensemble], Rows], *, label: str,
-    rule: StopRule, seed: int, executor: Executor | None, max_trials: int,
+    rule: StopRule, seed: int, executor: Executor | None, max_trials: int, ledger: Ledger | None = None,
 ) -> Rows:
     """Run the trials of each case, all from one seed, and put the rows together.
 
@@ -28,7 +28,7 @@ def study_each(
     rows : callable
         Makes rows of a case and its ensemble.
     label : str
-        What the progress bar calls a case, which takes the place of the braces.
+        What the progress bar and the ledger call a case, which takes the place of the braces.
     rule : StopRule
         Says when an estimate has settled.
     seed : int
@@ -37,6 +37,8 @@ def study_each(
         Runs the trials; in place without one.
     max_trials : int
         Trials after which a study ends all the same [-].
+    ledger : Ledger, optional
+        Keeps the trials of all cases.
 
     Returns
     -------
@@ -52,4 +54,4 @@ def study_each(
     """
     return [row for case in cases
             for row in rows(case, monte_carlo(trial(case), rule=rule, seed=seed, executor=executor,
-                                              max_trials=max_trials, label=label.format(case)))]
+                                              max_trials=max_trials, label=label.format(case), ledger=ledger))]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
 from typing import Any
 
 import control as ct
@@ -11,7 +10,7 @@ import numpy as np
 from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.coupling import moving_crowd
 from hsictrl.crowd import Traffic, Walker, Walkers
-from hsictrl.paper.reports import Report
+from hsictrl.paper.reports import Report, Run
 from hsictrl.prediction import ASSUMPTIONS, predict
 from hsictrl.walking import HarmonicForce
 
@@ -40,7 +39,7 @@ def found(model: str, bridge: Footbridge, walkers: Traffic) -> tuple[int, bool]:
     return len(first), not np.allclose(first, later)
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """Five rows, one per model; they take milliseconds, so they are always computed anew."""
     bridge = reference_bridge()
     walkers = traffic(bridge, PERSONS)

@@ -7,10 +7,10 @@ from concurrent.futures import Executor
 
 from hsictrl.paper.cells import CELLS, DEFAULT, FREQUENCIES, SPREADS, Cell, SharedTrafficTrial
 from hsictrl.paper.intervals import RULE, Interval, percentile, ratio
-from hsictrl.paper.reports import Report, Rows, committed, rounded
+from hsictrl.paper.reports import Report, Rows, Run, committed, rounded
 from hsictrl.paper.studies import study_each
 from hsictrl.prediction import ASSUMPTIONS, MODELS
-from hsictrl.study import Ensemble
+from hsictrl.study import Ensemble, Ledger
 from hsictrl.study.ratios import RESAMPLES
 
 SEED, MAX_TRIALS = 2, 3000
@@ -31,9 +31,9 @@ def printed(cell: Cell, model: str) -> tuple[str, float]:
     return text, 1.0 if text.startswith("<") else 1 + int(text) / 100
 
 
-def report(recompute: bool, executor: Executor | None) -> Report:
+def report(run: Run) -> Report:
     """Sixty rows: two densities, two cases, three natural frequencies, five models."""
-    rows = study(CELLS, executor) if recompute else committed("table2")
+    rows = study(CELLS, run.executor, run.ledger) if run.recompute else committed("table2")
     return Report(name="table2", rows=rows, columns=COLUMNS, study=True, caption=(
         f"Table 2: a95 of the peak acceleration, and its ratio to that of MC with a 95 % interval (paired bootstrap, "
         f"{RESAMPLES} resamples), ξ_B {100 * DEFAULT.damping:g} %, m_B {DEFAULT.modal_mass:g} kg; all models of a cell "
@@ -42,10 +42,13 @@ def report(recompute: bool, executor: Executor | None) -> Report:
         "printed one, less one"))
 
 
-def study(cells: Sequence[Cell], executor: Executor | None = None, *, max_trials: int = MAX_TRIALS) -> Rows:
+def study(
+    cells: Sequence[Cell], executor: Executor | None = None, ledger: Ledger | None = None, *,
+    max_trials: int = MAX_TRIALS,
+) -> Rows:
     """Run the trials of some cells."""
     return study_each(cells, lambda cell: SharedTrafficTrial(cell=cell), _rows, label="table2, {}", rule=RULE,
-                      seed=SEED, executor=executor, max_trials=max_trials)
+                      seed=SEED, executor=executor, max_trials=max_trials, ledger=ledger)
 
 
 def _rows(cell: Cell, ensemble: Ensemble) -> Rows:
