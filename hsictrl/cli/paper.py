@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 def paper(
     name: Annotated[str, typer.Argument(metavar="NAME", help="table1, table2, readings, load_cycles, fig1, fig2, fig3, "
-                                                             "fig4, fig8 or claims.")],
+                                                             "fig4, fig8, maps, fig9, fig10, fig11, stationary or "
+                                                             "claims.")],
     recompute: Annotated[bool, typer.Option("--recompute", help="Compute anew, not from committed results.")] = False,
     processes: options.Processes = 1,
     output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where the figure and its numbers go.")] = Path(),
@@ -42,7 +43,8 @@ def paper(
 
     A figure is written as NAME.png; its numbers, or those of a study, as NAME.json. All numbers and claims are printed.
     A study that runs anew keeps its trials in NAME.ledger; after it was stopped, --resume goes on with them.
-    "readings" compares what the paper leaves open with its table 2; "load_cycles" is SF over MF on longer spans.
+    "readings" compares what the paper leaves open with its table 2; "load_cycles" is SF over MF on longer spans,
+    "maps" the study behind figures 9 to 11, and "stationary" SF over MF in some of its cells.
 
     Exit code: 0 when it worked, 1 when a trial failed, 2 for bad input, 130 when interrupted.
     """

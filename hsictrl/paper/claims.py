@@ -6,25 +6,43 @@ import tomllib
 from collections.abc import Callable, Iterator
 from importlib.resources import files
 
-from hsictrl.paper import claims_fig3, claims_fig4, claims_fig8, claims_table2, fig4, fig8, load_cycles, table2
+from hsictrl.paper import (
+    claims_fig3,
+    claims_fig4,
+    claims_fig8,
+    claims_maps,
+    claims_table2,
+    fig4,
+    fig8,
+    load_cycles,
+    maps,
+    table2,
+)
 from hsictrl.paper.reports import Finding, Report, Rows, Run
 
 VERDICTS = {True: "holds", False: "fails", None: "undecided"}
 
 
 def report(run: Run) -> Report:
-    """All claims that have a criterion and a finding."""
-    findings = _findings(*(study.report(run).rows for study in (fig4, table2, load_cycles, fig8)))
-    rows: Rows = [_row(claim, *findings[claim["id"]]()) for claim in _claims()]
-    held = sum(row["verdict"] == "holds" for row in rows)
+    """All claims, each by its criterion."""
+    studies = (fig4.report, table2.report, load_cycles.report, fig8.report, maps.report, maps.stationary)
+    findings = _findings(*(study(run).rows for study in studies))
+    rows: Rows = [_row(claim, *findings.get(claim["id"], _not_evaluated)()) for claim in _claims()]
+    counts = ", ".join(f"{[row['verdict'] for row in rows].count(verdict)} {verdict}" for verdict in VERDICTS.values())
     return Report(name="claims", rows=rows, columns=["id", "where", "says", "measured", "verdict", "reason"],
-                  caption=f"{held} of {len(rows)} claims hold by their criterion")
+                  caption=f"{len(rows)} claims by their criterion: {counts}")
 
 
-def _findings(effective: Rows, table: Rows, cycles: Rows, bars: Rows) -> dict[str, Callable[[], Finding]]:
-    """All findings by id, from the rows of figure 4, table 2, the load cycles and figure 8."""
+def _findings(
+    effective: Rows, table: Rows, cycles: Rows, bars: Rows, cells: Rows, stationary: Rows,
+) -> dict[str, Callable[[], Finding]]:
+    """All findings by id, from the rows of figure 4, table 2, the load cycles, figure 8 and the maps."""
     return (claims_fig3.FINDINGS | claims_fig4.findings(effective) | claims_table2.findings(table, cycles)
-            | claims_fig8.findings(bars))
+            | claims_fig8.findings(bars) | claims_maps.findings(cells, stationary))
+
+
+def _not_evaluated() -> Finding:
+    return "nothing", None, "the bridge that it is about, Eeklo, is not described here"
 
 
 def _row(claim: dict[str, str], measured: str, holds: bool | None, reason: str) -> dict[str, str]:

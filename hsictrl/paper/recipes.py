@@ -6,7 +6,22 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 
 from hsictrl import _checks as check
-from hsictrl.paper import claims, fig1, fig2, fig3, fig4, fig8, load_cycles, readings, table1, table2
+from hsictrl.paper import (
+    claims,
+    fig1,
+    fig2,
+    fig3,
+    fig4,
+    fig8,
+    fig9,
+    fig10,
+    fig11,
+    load_cycles,
+    maps,
+    readings,
+    table1,
+    table2,
+)
 from hsictrl.paper.maps import GRIDS
 from hsictrl.paper.reports import Report, Run
 from hsictrl.study import Ledger
@@ -14,9 +29,10 @@ from hsictrl.study import Ledger
 RECIPES: dict[str, Callable[[Run], Report]] = {
     "table1": table1.report, "table2": table2.report, "readings": readings.report, "load_cycles": load_cycles.report,
     "fig1": fig1.report, "fig2": fig2.report, "fig3": fig3.report, "fig4": fig4.report, "fig8": fig8.report,
-    "claims": claims.report}
+    "maps": maps.report, "fig9": fig9.report, "fig10": fig10.report, "fig11": fig11.report,
+    "stationary": maps.stationary, "claims": claims.report}
 AT_ONCE = ("table1", "fig1", "fig2", "fig3")    # need no study
-ON_GRID = ("fig9", "fig10", "fig11")            # maps, whose cells are a choice
+ON_GRID = ("maps", "fig9", "fig10", "fig11")    # maps, whose cells are a choice
 
 
 def names() -> tuple[str, ...]:
@@ -29,7 +45,8 @@ def names() -> tuple[str, ...]:
     Examples
     --------
     >>> names()
-    ('table1', 'table2', 'readings', 'load_cycles', 'fig1', 'fig2', 'fig3', 'fig4', 'fig8', 'claims')
+    ('table1', 'table2', 'readings', 'load_cycles', 'fig1', 'fig2', 'fig3', 'fig4', 'fig8', 'maps', 'fig9', 'fig10',
+     'fig11', 'stationary', 'claims')
     """
     return tuple(RECIPES)
 
