@@ -453,8 +453,8 @@ def test_an_interrupted_study_of_the_paper_goes_on_to_the_same_rows(short, monke
     assert kept < 8
 
     assert run(*words, code=2).stderr == (
-        f"Error: the ledger must be a new file, got {book}, which holds {kept} trials; give --resume to go on with them, "
-        "or choose another file by --ledger\n")
+        f"Error: the ledger must be a new file, got {book}, which holds {kept} trials; give --resume to go on with "
+        "them, or choose another file by --ledger\n")
     short.clear()
     run(*words, "--resume")
     assert len(short) == 8 - kept
