@@ -16,8 +16,9 @@ test: .venv/.tools     ## lint, types, walls, unit tests, doctests, documentatio
 	MPLBACKEND=Agg $(BIN)/python -m pytest
 	$(BIN)/sphinx-build -q -W --keep-going docs docs/_build/html
 
-bench: .venv/.tools    ## ours, the host's road, and the ratio, in one run on one thread
+bench: .venv/.tools    ## ours, the host's road, and the ratio, in one run on one thread; then studies, in two processes
 	$(BIN)/python tests/benchmarks/bench.py
+	$(BIN)/python tests/benchmarks/studies.py
 
 docs: .venv/.tools     ## the documentation, into docs/_build/html
 	$(BIN)/sphinx-build -q -W docs docs/_build/html

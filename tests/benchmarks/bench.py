@@ -6,18 +6,15 @@ sets one BLAS thread, without which a busy machine gives figures that mean nothi
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 import tracemalloc
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterator
 from functools import partial
 
 import control as ct
 import numpy as np
-from rich.console import Console
-from rich.table import Table
+from rows import Row, best, show
 
 import hsictrl as hsi
 from hsictrl.prediction.forces import modal_force
@@ -28,29 +25,6 @@ from hsictrl.walking.lines import spline
 WALKERS, POINTS, SEED = 225, 500, 1
 OMEGA = 2 * np.pi * np.linspace(1.0, 6.0, POINTS)
 BRIDGE = hsi.reference_bridge(frequency=2.0, damping=0.005)
-
-
-@dataclass(frozen=True)
-class Row:
-    """One comparison: seconds of ours, seconds of the other road, and what was asked for."""
-
-    what: str
-    ours: float
-    other: str
-    theirs: float | None
-    bar: str
-
-
-def best(run: Callable[[], object], repeats: int) -> float:
-    """Median time of several runs [s]; a first run warms caches up."""
-    if repeats > 1:
-        run()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - start)
-    return float(np.median(times))
 
 
 def crowd(n: int, sprung_ratio: float = 0.95) -> tuple[hsi.Crowd, np.ndarray]:
@@ -235,17 +209,13 @@ def last(walkers: hsi.Walkers, n: int) -> tuple[hsi.Walkers, float]:
     return kept, float(kept.arrival[0])
 
 
-def main() -> None:
-    """Print the table."""
-    if os.environ.get("OPENBLAS_NUM_THREADS") != "1":
-        sys.exit("OPENBLAS_NUM_THREADS must be 1, so that one thread is compared with one; use make bench")
-    table = Table("what", "ours, ms", "other road", "ms", "ratio", "bar", title="one thread, one run, medians")
-    for row in [coupling(), *frequency_response(), effective(), *trial(), *stepping()]:
-        compared = row.theirs is not None
-        theirs, ratio = (f"{1e3 * row.theirs:.1f}", f"{row.theirs / row.ours:.3g}×") if compared else ("-", "-")
-        table.add_row(row.what, f"{1e3 * row.ours:.2f}", row.other, theirs, ratio, row.bar)
-    Console(width=150).print(table, memory())
+def rows() -> Iterator[Row]:
+    yield coupling()
+    yield from frequency_response()
+    yield effective()
+    yield from trial()
+    yield from stepping()
 
 
 if __name__ == "__main__":
-    main()
+    show("one thread, one run, medians", rows, memory)
