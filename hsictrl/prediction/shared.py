@@ -68,16 +68,16 @@ def tuned_peaks(models: Sequence[str], bridges: Sequence[Footbridge], traffic: T
         check.choice("models", model, SHARED_MODELS)
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
     deck, table = check_alike(bridges), np.array([_properties(bridge.modes[0]) for bridge in bridges])
+    crowd = _crowd(deck, traffic) if "PMC" in models else None
+    # what does not push back is found for a modal mass of 1 kg, and answers in inverse proportion to it
     unit, of = np.unique(table * [1, 1, 0] + [0, 0, 1], axis=0, return_inverse=True)
-    crowd = _crowd(deck, traffic)
-    groups = {"MF": _Group.of(unit, None), "PMC": _Group.of(unit if crowd is None else table, crowd)}
-    moving = {model: groups[model] for model in models if model in groups}
-    found = dict(zip(moving, _peaks(deck, traffic, list(moving.values())), strict=True))
+    groups = {model: _Group.of(unit if crowd is None or model == "MF" else table, crowd if model == "PMC" else None)
+              for model in models if model != "SF"}
+    found = dict(zip(groups, _peaks(deck, traffic, list(groups.values())), strict=True))
     if "SF" in models:
         found["SF"] = _steady(deck, traffic, unit)
-    # what does not push back is found for a modal mass of 1 kg, and answers in inverse proportion to it
-    return np.array([found[model] if len(found[model]) == len(table) and model == "PMC" and crowd
-                     else found[model][of.ravel()] / table[:, 2] for model in models])
+    return np.array([found[model] if model == "PMC" and crowd is not None else found[model][of.ravel()] / table[:, 2]
+                     for model in models])
 
 
 @final
