@@ -222,7 +222,7 @@ def drawn(rows: Rows, key: str, *, quantity: str, levels: tuple[float, ...]) -> 
 
     densities, frequencies, masses, dampings = (tuple(dict.fromkeys(row[one] for row in rows)) for one in KEYS)
     values = np.reshape([row[key] for row in rows], (len(densities), len(frequencies), len(masses), len(dampings)))
-    panels = {f"{density:g}/m², ξ_B {100 * damping:g} %": values[i, :, :, j].T
+    panels = {rf"{density:g}/m², $\xi_B$ {100 * damping:g} %": values[i, :, :, j].T
               for j, damping in enumerate(dampings) for i, density in enumerate(densities)}
     return plots.map_plot(frequencies, np.array(masses) / 1e3, panels, quantity=quantity, levels=levels,
                           columns=len(densities))
