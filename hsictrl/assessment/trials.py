@@ -12,7 +12,7 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
-from hsictrl.crowd import CrowdFlow
+from hsictrl.crowd import CrowdFlow, Traffic
 from hsictrl.prediction import MODELS, Prediction, check_alike, predict, predict_tuned, tuned_peaks
 from hsictrl.prediction.shared import SHARED_MODELS
 from hsictrl.resonance import effective
@@ -85,13 +85,13 @@ class PeakTrial:
 class PeaksTrial:
     """A trial: one sample of traffic, and the peak accelerations that models predict for it on several bridges.
 
-    Each bridge and model has the traffic tuned to its own resonance, as in `PeakTrial`; what they share is worked out
-    once (`tuned_peaks`).
+    Each bridge and model has the traffic tuned to its own resonance, as in `PeakTrial`. What bridges share is worked
+    out once for SF, MF and PMC (`tuned_peaks`); MFAM and MC predict one by one.
 
     Parameters
     ----------
     models : sequence of str
-        "SF", "MF" or "PMC".
+        "SF", "MF", "MFAM", "PMC" or "MC".
     bridges : sequence of Footbridge
         Empty bridges of one mode, which may differ in its frequency, damping and modal mass.
     flow : CrowdFlow
@@ -116,7 +116,7 @@ class PeaksTrial:
     def __post_init__(self) -> None:
         check.store(self, models=tuple(self.models), bridges=tuple(self.bridges))
         for model in self.models:
-            check.choice("models", model, SHARED_MODELS)
+            check.choice("models", model, MODELS)
         for bridge in self.bridges:
             check_case(bridge, self.flow)
         check_alike(self.bridges)
@@ -128,7 +128,12 @@ class PeaksTrial:
     def __call__(self, rng: np.random.Generator) -> Array:
         slowest = min(self.bridges, key=lambda bridge: bridge.damping[0] * bridge.omega[0])
         traffic = self.flow.sample(slowest, rng=rng, force=self.force)
-        return np.concatenate([tuned_peaks(model, self.bridges, traffic) for model in self.models])
+        return np.concatenate([self._peaks(model, traffic) for model in self.models])
+
+    def _peaks(self, model: str, traffic: Traffic) -> Array:
+        if model in SHARED_MODELS:
+            return tuned_peaks(model, self.bridges, traffic)
+        return np.array([predict_tuned(model, bridge, traffic).peak_acceleration for bridge in self.bridges])
 
 
 @final
