@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -12,7 +13,7 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
-from hsictrl.crowd import CrowdFlow, Traffic
+from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import MODELS, Prediction, check_alike, predict, predict_tuned, tuned_peaks
 from hsictrl.prediction.shared import SHARED_MODELS
 from hsictrl.resonance import effective
@@ -85,13 +86,13 @@ class PeakTrial:
 class PeaksTrial:
     """A trial: one sample of traffic, and the peak accelerations that models predict for it on several bridges.
 
-    Each bridge and model has the traffic tuned to its own resonance, as in `PeakTrial`. What bridges share is worked
-    out once for SF, MF and PMC (`tuned_peaks`); MFAM and MC predict one by one.
+    Each bridge and model has the traffic tuned to its own resonance, as in `PeakTrial`; what they share is worked out
+    once (`tuned_peaks`).
 
     Parameters
     ----------
     models : sequence of str
-        "SF", "MF", "MFAM", "PMC" or "MC".
+        "SF", "MF" or "PMC".
     bridges : sequence of Footbridge
         Empty bridges of one mode, which may differ in its frequency, damping and modal mass.
     flow : CrowdFlow
@@ -116,7 +117,7 @@ class PeaksTrial:
     def __post_init__(self) -> None:
         check.store(self, models=tuple(self.models), bridges=tuple(self.bridges))
         for model in self.models:
-            check.choice("models", model, MODELS)
+            check.choice("models", model, SHARED_MODELS)
         for bridge in self.bridges:
             check_case(bridge, self.flow)
         check_alike(self.bridges)
@@ -128,12 +129,37 @@ class PeaksTrial:
     def __call__(self, rng: np.random.Generator) -> Array:
         slowest = min(self.bridges, key=lambda bridge: bridge.damping[0] * bridge.omega[0])
         traffic = self.flow.sample(slowest, rng=rng, force=self.force)
-        return np.concatenate([self._peaks(model, traffic) for model in self.models])
+        return np.concatenate([tuned_peaks(model, self.bridges, traffic) for model in self.models])
 
-    def _peaks(self, model: str, traffic: Traffic) -> Array:
-        if model in SHARED_MODELS:
-            return tuned_peaks(model, self.bridges, traffic)
-        return np.array([predict_tuned(model, bridge, traffic).peak_acceleration for bridge in self.bridges])
+
+@final
+@dataclass(frozen=True, slots=True)
+class JointTrial:
+    """A trial: several trials under the same random numbers, so that all of one flow meet the same people.
+
+    Parameters
+    ----------
+    trials : sequence of PeakTrial or PeaksTrial
+        Whose peaks follow each other.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> alone = PeakTrial(model="MFAM", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
+    >>> joint = JointTrial([PeakTrial(model="MF", bridge=alone.bridge, flow=alone.flow), alone])
+    >>> bool(joint(np.random.default_rng(1))[1] == alone(np.random.default_rng(1)))     # m/s²
+    True
+    """
+
+    trials: Sequence[PeakTrial | PeaksTrial]
+
+    def __post_init__(self) -> None:
+        check.store(self, trials=tuple(self.trials))
+        for trial in self.trials:
+            check.instance("trials", trial, (PeakTrial, PeaksTrial), "give a list of these")
+
+    def __call__(self, rng: np.random.Generator) -> Array:
+        return np.concatenate([np.atleast_1d(trial(deepcopy(rng))) for trial in self.trials])
 
 
 @final

@@ -70,14 +70,15 @@ def _frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
 
 def draw_maps(path: Path, found: Estimates, quantity: str) -> None:
     """Draw estimates over frequency and modal mass, a panel for each of the other values, into a file."""
-    several = {name: values for name, values in found.axes.items() if name in PANEL_TITLES and len(values) > 1}
-    others = {name: values[0] for name, values in found.axes.items() if name in PANEL_TITLES and len(values) == 1}
-    panels = {}
-    for values in product(*several.values()):
-        point = dict(zip(several, values, strict=True))
-        title = ", ".join(PANEL_TITLES[name](value) for name, value in point.items())
-        panels[title] = found.at({**others, **point}).estimate.T
+    panelled = {name: values for name, values in found.axes.items() if name in PANEL_TITLES}
+    panels = {_panel_title(found, point): found.at(point).estimate.T for point in (
+        dict(zip(panelled, values, strict=True)) for values in product(*panelled.values()))}
     across, along = found.axes["frequency"], np.array(found.axes["modal_mass"], dtype=float) / 1e3
-    columns = len(several.get("damping", ()))
+    columns = len(found.axes["damping"])
     plots.save(plots.map_plot(across, along, panels, quantity=quantity, columns=columns if 1 < columns <= 5 else None),
                path)
+
+
+def _panel_title(found: Estimates, point: dict[str, Any]) -> str:
+    """What differs between panels."""
+    return ", ".join(PANEL_TITLES[name](value) for name, value in point.items() if len(found.axes[name]) > 1)

@@ -49,7 +49,8 @@ class Outcome:
     def show(self, *, as_json: bool, as_csv: bool) -> None:
         """Print JSON, CSV or the table."""
         if as_json:
-            print_json({"bridge": bridge_document(self.description.bridge), "settings": self._settings(), "rows": self.rows})
+            print_json({"bridge": bridge_document(self.description.bridge), "settings": self._settings(),
+                        "rows": self.rows})
         elif as_csv:
             print_csv(self.rows)
         else:

@@ -24,13 +24,14 @@ from pathlib import Path
 from typing import Any, final
 
 from hsictrl import _checks as check
-from hsictrl.assessment import PeaksTrial, check_assessable
+from hsictrl.assessment import JointTrial, PeaksTrial, PeakTrial, check_assessable
 from hsictrl.bridge import Footbridge
 from hsictrl.cli import schema
 from hsictrl.cli.description import FORCE, Description, described, plain_force
 from hsictrl.cli.schema import Keys, Table
 from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import MODELS
+from hsictrl.prediction.shared import SHARED_MODELS
 from hsictrl.walking import WalkingForce
 
 NUMBERS = ("frequency", "modal_mass", "damping", "density")
@@ -84,7 +85,7 @@ class Study:
         """The axes along which a trial has one sample of traffic."""
         return {"model": self.model, "modal_mass": self.modal_mass, "damping": self.damping}
 
-    def trial(self, *, density: float, frequency: float, force: str) -> PeaksTrial:
+    def trial(self, *, density: float, frequency: float, force: str) -> PeaksTrial | JointTrial:
         """One sample of traffic on all bridges of one frequency.
 
         Parameters
@@ -98,7 +99,8 @@ class Study:
 
         Returns
         -------
-        PeaksTrial
+        PeaksTrial or JointTrial
+            The latter if a model is among them for which bridges share nothing.
 
         Examples
         --------
@@ -107,9 +109,16 @@ class Study:
         >>> study.trial(density=0.5, frequency=2.0, force="zivanovic").flow.density
         0.5
         """
-        bridges = [changed(self.case.bridge, frequency=frequency, modal_mass=mass, damping=damping)
-                   for mass, damping in product(self.modal_mass, self.damping)]
-        return PeaksTrial(models=self.model, bridges=bridges, flow=self.flows[density], force=self.forces[force])
+        bridges, flow, walking = self.bridges(frequency), self.flows[density], self.forces[force]
+        if {*self.model} <= {*SHARED_MODELS}:
+            return PeaksTrial(models=self.model, bridges=bridges, flow=flow, force=walking)
+        return JointTrial([PeakTrial(model=model, bridge=bridge, flow=flow, force=walking)
+                           for model in self.model for bridge in bridges])
+
+    def bridges(self, frequency: float) -> list[Footbridge]:
+        """The bridges of one frequency [Hz]."""
+        return [changed(self.case.bridge, frequency=frequency, modal_mass=mass, damping=damping)
+                for mass, damping in product(self.modal_mass, self.damping)]
 
 
 def changed(bridge: Footbridge, *, frequency: float, modal_mass: float, damping: float) -> Footbridge:
@@ -188,7 +197,6 @@ def _study(case: Description, described_force: str, axes: dict[str, tuple[Any, .
 
 def _rehearse(study: Study) -> None:
     """Ask what refuses a cell once, before the long work."""
-    for values in product(*study.cells.values()):
-        trial = study.trial(**dict(zip(study.cells, values, strict=True)))
-        for bridge in trial.bridges:
-            check_assessable(bridge, trial.flow)
+    bridges = [bridge for frequency in study.frequency for bridge in study.bridges(frequency)]
+    for bridge, flow in product(bridges, study.case.flows):
+        check_assessable(bridge, flow)

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
-from itertools import product
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from rich.table import Table
 
-from hsictrl import __version__, study
 from hsictrl import _checks as check
-from hsictrl.cli import options, tables
+from hsictrl import study
+from hsictrl.cli import options
 from hsictrl.cli.endings import failing, refusing
 from hsictrl.cli.files import checked_folder, checked_ledger, whole_file
-from hsictrl.cli.outcome import Rows, bridge_document, json_text, print_json, print_table
-from hsictrl.cli.study import PAIR, Study, read_study
-from hsictrl.cli.tables import Column, estimate
+from hsictrl.cli.outcome import json_text, print_json, print_table
+from hsictrl.cli.study import Study, read_study
+from hsictrl.cli.swept import Swept
 from hsictrl.cli.workers import checked_processes, workers
-from hsictrl.study import Estimates, PercentileRule, Sweep
+from hsictrl.study import PercentileRule
 
 LARGEST_SEED = 2**31 - 1    # of a whole number in a netCDF file
 UNITS = {"density": "1/m²", "frequency": "Hz", "modal_mass": "kg"}
@@ -72,21 +69,19 @@ def sweep(
         found = study.sweep(
             asked.trial, asked.cells, shared=asked.shared, name=_name(rule), units={**UNITS, _name(rule): "m/s²"},
             rule=rule, seed=asked.case.seed, executor=executor, max_trials=max_trials, label=file.stem, ledger=book)
-    ratio = found.ratio("model", *PAIR) if {*PAIR} <= {*asked.model} else None
-    document = {"bridge": bridge_document(asked.case.bridge), "settings": _settings(asked, rule, max_trials),
-                "rows": list(_rows(asked, found, ratio))}
-    _write(folder / file.stem, document, found, ratio)
+    swept = Swept.of(asked, rule, max_trials, found)
+    _write(folder / file.stem, swept)
     if as_json:
-        print_json(document)
+        print_json(swept.document())
     else:
-        print_table(_table(asked, rule, document["rows"]), _notes(asked, rule, found))
+        print_table(swept.table(), swept.notes())
 
 
 def _seeded(asked: Study, seed: int | None) -> Study:
     """The same study with the seed of an option, if there is one."""
     asked = asked if seed is None else replace(asked, case=replace(asked.case, seed=seed))
     if asked.case.seed > LARGEST_SEED:
-        raise ValueError(f"seed must be at most {LARGEST_SEED}, got {asked.case.seed}; a netCDF file holds no larger one")
+        raise ValueError(f"seed must be at most {LARGEST_SEED}, got {asked.case.seed}; netCDF files hold no larger one")
     return asked
 
 
@@ -94,101 +89,31 @@ def _name(rule: PercentileRule) -> str:
     return f"a{rule.percentile:g}".replace(".", "_")
 
 
-def _settings(asked: Study, rule: PercentileRule, max_trials: int) -> dict[str, Any]:
-    return {"percentile": rule.percentile, "tolerance": rule.tolerance, "confidence": rule.confidence,
-            "max_trials": max_trials, "seed": asked.case.seed,
-            "forces": {name: repr(force) for name, force in asked.forces.items()},
-            "flows": list(map(repr, asked.case.flows)), "hsictrl": __version__}
-
-
-def _rows(asked: Study, found: Sweep, ratio: Estimates | None) -> Iterator[dict[str, Any]]:
-    """A row per bridge, crowd and force, with a peak per model."""
-    whole = found.at({})
-    for cell, ensemble in zip(product(*asked.cells.values()), found.ensembles, strict=True):
-        for shared in product(asked.modal_mass, asked.damping):
-            density, frequency, force, modal_mass, damping = *cell, *shared
-            point = {"density": density, "frequency": frequency, "force": force, "modal_mass": modal_mass,
-                     "damping": damping}
-            row = {"density_per_m2": density, "persons": asked.flows[density].persons_on(asked.case.bridge),
-                   "frequency_hz": frequency, "force": force, "modal_mass_kg": modal_mass, "damping": damping}
-            for model in asked.model:
-                row |= _quantity(f"a_{model.lower()}", "_m_per_s2", whole.at({**point, "model": model}))
-            row |= {} if ratio is None else _quantity("r_hsi", "", ratio.at(point))
-            yield row | {"trials": ensemble.n_trials, "converged": ensemble.converged}
-
-
-def _quantity(name: str, unit: str, found: Estimates) -> dict[str, float]:
-    parts = {"": found.estimate, "_low": found.low, "_high": found.high}
-    return {f"{name}{part}{unit}": float(value) for part, value in parts.items()}
-
-
-def _write(stem: Path, document: dict[str, Any], found: Sweep, ratio: Estimates | None) -> None:
+def _write(stem: Path, swept: Swept) -> None:
     with whole_file(stem.with_name(f"{stem.name}.json")) as draft:
-        draft.write_text(json_text(document) + "\n", encoding="utf-8")
-    _write_dataset(stem.with_name(f"{stem.name}.nc"), found, ratio)
-    if min(len(found.axes[name]) for name in ("frequency", "modal_mass")) > 1:
-        _draw(stem, found, ratio)
+        draft.write_text(json_text(swept.document()) + "\n", encoding="utf-8")
+    _write_dataset(stem.with_name(f"{stem.name}.nc"), swept)
+    if min(len(swept.found.axes[name]) for name in ("frequency", "modal_mass")) > 1:
+        _draw(stem, swept)
 
 
-def _write_dataset(path: Path, found: Sweep, ratio: Estimates | None) -> None:
+def _write_dataset(path: Path, swept: Swept) -> None:
     try:
-        data = found.to_xarray()
+        data = swept.dataset()
     except ImportError as error:
         typer.echo(f"Remark: {path} was not written: {error}", err=True)
         return
-    if ratio is not None:
-        data = data.assign({f"r_hsi{part}": (list(ratio.axes), values) for part, values in (
-            ("", ratio.estimate), ("_low", ratio.low), ("_high", ratio.high))})
     with whole_file(path) as draft:
         data.to_netcdf(draft)
 
 
-def _draw(stem: Path, found: Sweep, ratio: Estimates | None) -> None:
+def _draw(stem: Path, swept: Swept) -> None:
     from hsictrl.cli.figure import draw_maps  # only now: it loads matplotlib
 
-    model = "PMC" if "PMC" in found.axes["model"] else str(found.axes["model"][-1])
+    models = swept.asked.model
+    model = "PMC" if "PMC" in models else models[-1]
     with whole_file(stem.with_name(f"{stem.name}.png")) as draft:
-        draw_maps(draft, found.at({"model": model}), f"$a_{{{found.name[1:].replace('_', '.')}}}$ {model} [m/s²]")
-    if ratio is not None:
+        draw_maps(draft, swept.found.at({"model": model}), f"$a_{{{swept.rule.percentile:g}}}$ {model} [m/s²]")
+    if swept.ratio is not None:
         with whole_file(stem.with_name(f"{stem.name}_r_hsi.png")) as draft:
-            draw_maps(draft, ratio, r"$R_\mathrm{HSI}$ [-]")
-
-
-def _table(asked: Study, rule: PercentileRule, rows: Rows) -> Table:
-    axes = {
-        "density": tables.FLOW,
-        "frequency": Column("f_B", "[Hz]", lambda row: f"{row['frequency_hz']:.4g}"),
-        "force": Column("force", "", lambda row: row["force"], "left"),
-        "modal_mass": Column("m_B", "[t]", lambda row: f"{row['modal_mass_kg'] / 1e3:.4g}"),
-        "damping": Column("ξ_B", "[%]", lambda row: f"{100 * row['damping']:.3g}")}
-    sizes = {name: len(values) for name, values in {**asked.cells, **asked.shared}.items()}
-    accelerations = [Column(f"a{rule.percentile:g} {model}", "[m/s²]", estimate(f"a_{model.lower()}", unit="_m_per_s2"))
-                     for model in asked.model]
-    reduction = [Column("R_HSI", "[-]", estimate("r_hsi"))] if "r_hsi" in rows[0] else []
-    count = Column("trials", "settled", lambda row: f"{row['trials']}\n{'yes' if row['converged'] else 'no'}")
-    return tables.table([*(column for name, column in axes.items() if sizes[name] > 1), *accelerations, *reduction,
-                         count], rows)
-
-
-def _notes(asked: Study, rule: PercentileRule, found: Sweep) -> list[str]:
-    left = int((~found.converged).sum())
-    return [
-        f"Deck: {asked.case.bridge.length:g} m × {asked.case.bridge.width:g} m. {_fixed(asked)}Seed: {asked.case.seed}.",
-        *(f"Force {name}: {force}." for name, force in asked.forces.items()),
-        f"a{rule.percentile:g}: percentile {rule.percentile:g} of the peak acceleration. R_HSI: that of MF over that of "
-        "PMC (eq. 18).",
-        f"Below an estimate: its {100 * rule.confidence:g} % interval. Trials of a row settle when all intervals lie "
-        f"within ±{100 * rule.tolerance:g} %.",
-        *([f"Remark: {left} of {found.converged.size} studies have not settled; give more --max-trials and --resume."]
-          if left else [])]
-
-
-def _fixed(asked: Study) -> str:
-    """What has one value, and no column."""
-    density, flow = next(iter(asked.flows.items()))
-    words = {"density": f"d = {density:.3g} /m² (n={flow.persons_on(asked.case.bridge)})",
-             "frequency": f"f_B = {asked.frequency[0]:g} Hz", "modal_mass": f"m_B = {asked.modal_mass[0] / 1e3:g} t",
-             "damping": f"ξ_B = {100 * asked.damping[0]:g} %"}
-    axes = {**asked.cells, **asked.shared}
-    told = [word for name, word in words.items() if len(axes[name]) == 1]
-    return f"{', '.join(told)}. " if told else ""
+            draw_maps(draft, swept.ratio, r"$R_\mathrm{HSI}$ [-]")
