@@ -234,8 +234,8 @@ def test_what_is_no_axis_comes_from_the_description(tmp_path: Path) -> None:
 def test_an_axis_takes_the_place_of_the_description(tmp_path: Path) -> None:
     found = read(tmp_path, "[bridge]\nkind = 'beam'\nspans = [20.0, 30.0]\nwidth = 3.0\nmass = 6e4\nfrequency = 2.5\n"
                            "damping = 0.01\n[traffic]\npersons = 15\nweight = 800\n[force]\nmodel = 'harmonic'\n"
-                           "factors = [0.4]\n[sweep]\nmodal_mass = [9e3]\nfrequency = [3, 2]\ndensity = [0.5]\nmodel = ['MC']\n"
-                           "force = ['zivanovic', 'harmonic', 'young']")
+                           "factors = [0.4]\n[sweep]\nmodal_mass = [9e3]\nfrequency = [3, 2]\ndensity = [0.5]\n"
+                           "model = ['MC']\nforce = ['zivanovic', 'harmonic', 'young']")
     assert found.frequency == (2.0, 3.0)
     assert found.forces == {"zivanovic": hsi.ZivanovicForce(), "harmonic": hsi.HarmonicForce([0.4]),
                             "young": hsi.YoungForce()}
