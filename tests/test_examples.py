@@ -4,6 +4,9 @@ import runpy
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from hsictrl.cli import app
 
 EXAMPLES = sorted((Path(__file__).parent.parent / "examples").glob("*.py"))
 
@@ -18,3 +21,12 @@ def test_the_roads_of_the_first_example_agree(capsys: pytest.CaptureFixture[str]
     runpy.run_path(str(EXAMPLES[0]), run_name="__main__")
     difference = float(capsys.readouterr().out.split(":")[1].split()[0])
     assert difference < 1e-14    # m/s² per N, beside a peak of 2e-3
+
+
+def test_the_study_runs(tmp_path: Path) -> None:
+    study = EXAMPLES[0].parent / "study.toml"
+    done = CliRunner().invoke(app, ["sweep", str(study), "--max-trials", "10", "--output", str(tmp_path)],
+                              catch_exceptions=False)
+    assert done.exit_code == 0
+    assert "R_HSI" in done.stdout
+    assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".ledger", ".nc", ".png"}

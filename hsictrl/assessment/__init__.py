@@ -2,7 +2,7 @@
 
 from hsictrl.assessment.assessed import Assessment
 from hsictrl.assessment.assessing import assess, check_assessable, effective_rule, guide_value, study_effective
-from hsictrl.assessment.trials import EffectiveTrial, PeaksTrial, PeakTrial
+from hsictrl.assessment.trials import EffectiveTrial, JointTrial, PeaksTrial, PeakTrial
 
-__all__ = ["Assessment", "EffectiveTrial", "PeakTrial", "PeaksTrial", "assess", "check_assessable", "effective_rule",
-           "guide_value", "study_effective"]
+__all__ = ["Assessment", "EffectiveTrial", "JointTrial", "PeakTrial", "PeaksTrial", "assess", "check_assessable",
+           "effective_rule", "guide_value", "study_effective"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -129,6 +130,36 @@ class PeaksTrial:
         slowest = min(self.bridges, key=lambda bridge: bridge.damping[0] * bridge.omega[0])
         traffic = self.flow.sample(slowest, rng=rng, force=self.force)
         return tuned_peaks(self.models, self.bridges, traffic).ravel()
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class JointTrial:
+    """A trial: several trials under the same random numbers, so that all of one flow meet the same people.
+
+    Parameters
+    ----------
+    trials : sequence of PeakTrial or PeaksTrial
+        Whose peaks follow each other.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> alone = PeakTrial(model="MFAM", bridge=reference_bridge(), flow=CrowdFlow(density=0.2))
+    >>> joint = JointTrial([PeakTrial(model="MF", bridge=alone.bridge, flow=alone.flow), alone])
+    >>> bool(joint(np.random.default_rng(1))[1] == alone(np.random.default_rng(1)))     # m/s²
+    True
+    """
+
+    trials: Sequence[PeakTrial | PeaksTrial]
+
+    def __post_init__(self) -> None:
+        check.store(self, trials=tuple(self.trials))
+        for trial in self.trials:
+            check.instance("trials", trial, (PeakTrial, PeaksTrial), "give a list of these")
+
+    def __call__(self, rng: np.random.Generator) -> Array:
+        return np.concatenate([np.atleast_1d(trial(deepcopy(rng))) for trial in self.trials])
 
 
 @final

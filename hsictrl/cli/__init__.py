@@ -4,13 +4,14 @@ import os
 
 import typer
 
-from hsictrl.cli import assess, effective, paper, simulate
+from hsictrl.cli import assess, effective, paper, simulate, sweep
 
 app = typer.Typer(
     name="hsictrl", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
     pretty_exceptions_enable=False, help="Footbridges under crowds: human-structure interaction, by python-control.")
 app.command()(assess.assess)
 app.command()(effective.effective)
+app.command()(sweep.sweep)
 app.command()(simulate.simulate)
 app.command()(paper.paper)
 

@@ -26,8 +26,7 @@ def assess(
     damping: options.Damping = None,
     modal_mass: options.ModalMass = None,
     density: options.Densities = None,
-    percentile: Annotated[float, typer.Option(
-        metavar="PERCENT", help="Percentile of the peak acceleration that is the design value.")] = 95.0,
+    percentile: options.Percentile = 95.0,
     tolerance: options.Tolerance = 0.05,
     seed: options.Seed = None,
     processes: options.Processes = 1,

@@ -55,6 +55,7 @@ from hsictrl.crowd import CrowdFlow
 from hsictrl.pedestrian import Population
 from hsictrl.walking import HarmonicForce, WalkingForce, YoungForce, ZivanovicForce
 
+FORCE = "zivanovic"
 DENSITIES = (0.2, 0.5, 0.8, 1.0, 1.5)   # persons/m², section 4.2
 
 
@@ -140,8 +141,13 @@ def read_description(path: Path) -> Description:
     >>> description.bridge.modes[0].frequency, [flow.persons for flow in description.flows]
     (3.25, [15, 75])
     """
-    top = Table.of(path)
-    values = top.read({**dict.fromkeys(PARTS, schema.TABLE), "seed": schema.WHOLE})
+    return described(Table.of(path))
+
+
+def described(top: Table, further: Keys | None = None) -> Description:
+    """What a document describes, beside further keys, which must be there for somebody else to read."""
+    further = further or {}
+    values = top.read({**dict.fromkeys(PARTS, schema.TABLE), "seed": schema.WHOLE, **further}, needs=further)
     parts = {name: make(top.table(key)) for key, (name, make) in PARTS.items() if key in values}
     return top.make(Description, parts | {key: value for key, value in values.items() if key == "seed"})
 
@@ -181,6 +187,15 @@ def _bridge(table: Table) -> Footbridge:
 
 def _force(table: Table) -> WalkingForce:
     force: WalkingForce = _of_kind(table, "model", _FORCES)
+    return force
+
+
+def plain_force(name: str) -> WalkingForce:
+    """A walking force of which nothing but the name is given."""
+    kind = _FORCES[check.choice("force", name, tuple(_FORCES))]
+    if kind.needs:
+        raise ValueError(f"force {name!r} must have its {', '.join(kind.needs)}, got none; describe it in [force]")
+    force: WalkingForce = kind.make()
     return force
 
 

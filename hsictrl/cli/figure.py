@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from itertools import product
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import control as ct
 import numpy as np
@@ -16,10 +18,13 @@ from hsictrl.cli.crossing import Crossing
 from hsictrl.cli.description import Description
 from hsictrl.coupling import OccupiedBridge
 from hsictrl.resonance import effective, frf
-from hsictrl.study import trial_rng
+from hsictrl.study import Estimates, trial_rng
 
 BAND, LINES = (0.5, 1.5), 2001   # of the empty bridge's frequency
 MULTIPLES = 4                    # of the step frequency, marked on a spectrum
+PANEL_TITLES: dict[str, Callable[[Any], str]] = {
+    "density": lambda value: f"{value:.3g} /m²", "force": str,
+    "damping": lambda value: rf"$\xi_B$ = {100 * value:.3g} %"}
 
 
 def draw(path: Path, found: Assessment, case: Description) -> None:
@@ -61,3 +66,19 @@ def _marks(crossing: Crossing) -> dict[str, ArrayLike]:
 
 def _frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
     return frf(system, system.bridge.modes[0].frequency * np.linspace(*BAND, LINES))
+
+
+def draw_maps(path: Path, found: Estimates, quantity: str) -> None:
+    """Draw estimates over frequency and modal mass, a panel for each of the other values, into a file."""
+    panelled = {name: values for name, values in found.axes.items() if name in PANEL_TITLES}
+    panels = {_panel_title(found, point): found.at(point).estimate.T for point in (
+        dict(zip(panelled, values, strict=True)) for values in product(*panelled.values()))}
+    across, along = found.axes["frequency"], np.array(found.axes["modal_mass"], dtype=float) / 1e3
+    columns = len(found.axes["damping"])
+    plots.save(plots.map_plot(across, along, panels, quantity=quantity, columns=columns if 1 < columns <= 5 else None),
+               path)
+
+
+def _panel_title(found: Estimates, point: dict[str, Any]) -> str:
+    """What differs between panels."""
+    return ", ".join(PANEL_TITLES[name](value) for name, value in point.items() if len(found.axes[name]) > 1)

@@ -49,7 +49,8 @@ class Outcome:
     def show(self, *, as_json: bool, as_csv: bool) -> None:
         """Print JSON, CSV or the table."""
         if as_json:
-            print_json({"bridge": _bridge(self.description.bridge), "settings": self._settings(), "rows": self.rows})
+            print_json({"bridge": bridge_document(self.description.bridge), "settings": self._settings(),
+                        "rows": self.rows})
         elif as_csv:
             print_csv(self.rows)
         else:
@@ -68,7 +69,12 @@ def one_form(as_json: bool, as_csv: bool) -> None:
 
 def print_json(document: Any) -> None:
     """Print JSON; what is not a number is null."""
-    print(json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False))
+    print(json_text(document))
+
+
+def json_text(document: Any) -> str:
+    """Write JSON; what is not a number is null."""
+    return json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def print_csv(rows: Rows) -> None:
@@ -93,7 +99,8 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _bridge(bridge: Footbridge) -> dict[str, Any]:
+def bridge_document(bridge: Footbridge) -> dict[str, Any]:
+    """A bridge for JSON, units in the keys."""
     modes = [{"frequency_hz": mode.frequency, "damping": mode.damping, "modal_mass_kg": mode.modal_mass}
              for mode in bridge.modes]
     return {"length_m": bridge.length, "width_m": bridge.width, "mass_kg": bridge.mass, "modes": modes}

@@ -45,6 +45,8 @@ WHOLE = Expected("a whole number", "2", _whole)
 TEXT = Expected("a word in quotes", '"word"', _text)
 TABLE = Expected("a table", "[name]", lambda value: isinstance(value, dict))
 NUMBERS = Expected("a list of numbers", "[20.0, 30.0]", lambda value: _all(value, _number))
+WORDS = Expected("a word in quotes or a list of them", '["one", "other"]',
+                 lambda value: _text(value) or _all(value, _text))
 ENDS = Expected("a list of two words", '["pinned", "clamped"]', lambda value: _all(value, _text) and len(value) == 2)
 ONE_OR_MORE = Expected("a number or a list of numbers", "[0.2, 0.5]",
                        lambda value: _number(value) or _all(value, _number))
