@@ -128,7 +128,8 @@ def grows_less(mf: Estimates, pmc: Estimates) -> Finding:
     return (f"a95 rises with m_B in {count[0]}, with ξ_B in {count[1]} steps beyond the intervals; from the largest to "
             f"the smallest m_B by {shown[0]} (MF {shown[1]}), ξ_B by {shown[2]} (MF {shown[3]}); less than MF in "
             f"{np.mean(less[0]):.0%} and {np.mean(less[1]):.0%} of the cells", holds,
-            "PMC grows more than MF somewhere" if not sum(count) else "a95 rises with damping or mass somewhere")
+            f"PMC grows more than MF at f_B of {_frequencies(pmc, ~less[0].all(axis=(0, 2)) | ~less[1].all(axis=(0, 2)))}"
+            " Hz" if not sum(count) else "a95 rises with damping or mass somewhere")
 
 
 def peak_moves_up(pmc: Estimates) -> Finding:
@@ -320,6 +321,10 @@ def _where(found: Estimates, place: int) -> str:
     indices = np.unravel_index(place, found.estimate.shape)
     at = [float(values[k]) for values, k in zip(found.axes.values(), indices, strict=True)]
     return f"{at[0]:g} /m², {at[1]:g} Hz, {at[2] / 1e3:g} t, {100 * at[3]:g} %"
+
+
+def _frequencies(found: Estimates, chosen: Flags) -> str:
+    return ", ".join(f"{f:g}" for f, one in zip(_axis(found, FREQUENCY), chosen, strict=True) if one)
 
 
 def _exceptions(found: Estimates, wrong: Flags) -> str:

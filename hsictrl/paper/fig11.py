@@ -8,7 +8,7 @@ from hsictrl.paper.maps import drawn, rows_of
 from hsictrl.paper.reports import Report, Run
 
 COLUMNS = ["density_per_m2", "xi_b", "f_b_hz", "m_b_kg", "r_hsi", "r_hsi_low", "r_hsi_high", "trials"]
-LEVELS = (1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
+LEVELS = (1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
 
 
 def report(run: Run) -> Report:
