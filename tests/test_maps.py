@@ -55,7 +55,7 @@ def test_rows_hold_what_the_sweep_found(tiny, monkeypatch):
 
 
 def test_the_grid_of_the_paper_is_not_committed():
-    with pytest.raises(ValueError, match=r"results must be those of the coarse grid .*, got 'paper'; give --rec"):
+    with pytest.raises(ValueError, match=r"the grid must be coarse unless .*, got paper; add --recompute"):
         compute("fig9", grid="paper")
 
 

@@ -17,6 +17,7 @@ from hsictrl import (
     ZivanovicForce,
     reference_bridge,
 )
+from hsictrl.assessment import PeaksTrial
 from hsictrl.prediction import predict_tuned
 from hsictrl.prediction.shared import SHARED_MODELS, tuned_peaks
 
@@ -109,3 +110,18 @@ def test_refusals(model, several, message):
 def test_traffic_is_asked_for():
     with pytest.raises(TypeError, match=r"traffic must be of type Traffic, got int; draw it with CrowdFlow.sample"):
         tuned_peaks(["MF"], bridges(), 3)
+
+
+@pytest.mark.parametrize(("changes", "message"), [
+    ({"models": "MF"}, "models must be of type list or tuple, got str; give a list"),
+    ({"models": []}, "models must hold at least one, got none"),
+    ({"models": ["MC"]}, "models must be one of .*, got 'MC'"),
+    ({"bridges": reference_bridge()}, "bridges must be of type list or tuple, got Footbridge; give a list"),
+    ({"bridges": [two_modes()]}, "bridges must have one mode each, got 2"),
+    ({"flow": CrowdFlow(density=0.2, step_frequency=2.0)}, "flow must leave step frequencies to the resonance"),
+    ({"force": 3}, "force must be of type WalkingForce, got int"),
+])
+def test_a_trial_of_peaks_refuses(changes, message):
+    given = {"models": ["MF"], "bridges": bridges(), "flow": CrowdFlow(density=0.2)} | changes
+    with pytest.raises((TypeError, ValueError), match=message):
+        PeaksTrial(**given)

@@ -54,7 +54,7 @@ def paper(
         check.choice("name", name, results.names())
         processes = checked_processes(processes)
         checked_folder(output)
-        grid = _checked_grid(name, grid)
+        grid = _checked_grid(name, grid, recompute)
         book = _checked_ledger(name, recompute, ledger, resume, output)
     with failing(), workers(processes) as executor:
         report = results.compute(name, recompute=recompute, executor=executor, ledger=book, grid=grid)
@@ -65,13 +65,13 @@ def paper(
         print_table(_table(report), [report.caption])
 
 
-def _checked_grid(name: str, grid: str | None) -> str:
+def _checked_grid(name: str, grid: str | None, recompute: bool) -> str:
     """Return the grid that a map takes; nothing else takes one."""
     from hsictrl.paper.recipes import ON_GRID, checked_grid
 
     if grid is not None and name not in ON_GRID:
         raise ValueError(f"--grid must come with one of {', '.join(ON_GRID)}, got {name}; leave it out")
-    return checked_grid(grid or "coarse")
+    return checked_grid(grid or "coarse", recompute)
 
 
 def _checked_ledger(name: str, recompute: bool, path: Path | None, resume: bool, folder: Path) -> Ledger | None:

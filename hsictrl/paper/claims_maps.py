@@ -123,13 +123,14 @@ def grows_less(mf: Estimates, pmc: Estimates) -> Finding:
     rises = [_steps_up(pmc, axis) for axis in (MASS, DAMPING)]
     less = [_ends(pmc, axis) < _ends(mf, axis) for axis in (MASS, DAMPING)]
     count = [int(one.sum()) for one in rises]
-    holds = not sum(count) and all(np.all(one) for one in less)
+    everywhere = np.all([one.all(axis=(0, 2)) for one in less], axis=0)
+    holds = bool(not sum(count) and everywhere.all())
     shown = [f"{_span(_ends(one, axis))}" for axis in (MASS, DAMPING) for one in (pmc, mf)]
     return (f"a95 rises with m_B in {count[0]}, with ξ_B in {count[1]} steps beyond the intervals; from the largest to "
             f"the smallest m_B by {shown[0]} (MF {shown[1]}), ξ_B by {shown[2]} (MF {shown[3]}); less than MF in "
             f"{np.mean(less[0]):.0%} and {np.mean(less[1]):.0%} of the cells", holds,
-            f"PMC grows more than MF at f_B of {_frequencies(pmc, ~less[0].all(axis=(0, 2)) | ~less[1].all(axis=(0, 2)))}"
-            " Hz" if not sum(count) else "a95 rises with damping or mass somewhere")
+            f"PMC grows more than MF at f_B of {_frequencies(pmc, ~everywhere)} Hz" if not sum(count) else
+            "a95 rises with damping or mass somewhere")
 
 
 def peak_moves_up(pmc: Estimates) -> Finding:

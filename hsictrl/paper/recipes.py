@@ -80,9 +80,12 @@ def compute(
     ['mass_ratio', 'frequency_ratio']
     """
     recipe = RECIPES[check.choice("name", name, names())]
-    return recipe(Run(recompute=recompute, executor=executor, ledger=ledger, grid=checked_grid(grid)))
+    return recipe(Run(recompute=recompute, executor=executor, ledger=ledger, grid=checked_grid(grid, recompute)))
 
 
-def checked_grid(grid: str) -> str:
-    """Return the grid if there is one of that name."""
-    return check.choice("grid", grid, tuple(GRIDS))
+def checked_grid(grid: str, recompute: bool) -> str:
+    """Return the grid if there is one of that name, and results of it."""
+    if check.choice("grid", grid, tuple(GRIDS)) != "coarse" and not recompute:
+        raise ValueError(f"the grid must be coarse unless its cells are computed anew, got {grid}; add --recompute "
+                         "(recompute=True), which takes hours")
+    return grid
