@@ -1,6 +1,6 @@
-"""How far `spectral_estimate` is from Monte Carlo: run trials, or read those that are kept, tabulate and draw.
+"""How far `spectral_estimate` is from Monte Carlo: run trials, or read those that are kept, and tabulate.
 
-`python docs/spectral_error.py` reads docs/spectral_error.json and writes docs/images/spectral_error.png;
+`python docs/spectral_error.py` reads docs/spectral_error.json;
 `python docs/spectral_error.py 45` first runs 45 trials a cell anew, some 10 min on a core.
 """
 
@@ -13,13 +13,12 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from matplotlib import pyplot as plt
 
 from hsictrl import CrowdFlow, reference_bridge, spectral_estimate, trial_rng
 from hsictrl.assessment import PeakTrial
 
 HERE = Path(__file__).parent
-KEPT, FIGURE = HERE / "spectral_error.json", HERE / "images" / "spectral_error.png"
+KEPT = HERE / "spectral_error.json"
 MODELS, FREQUENCIES = ("MF", "PMC"), (1.5, 2.0, 2.5, 3.25, 4.0, 5.0)
 DENSITIES, DAMPINGS = (0.2, 0.5, 0.8, 1.0, 1.5), (0.002, 0.005, 0.02)
 
@@ -90,29 +89,9 @@ def report(rows, found):
             print("  worst", rows[i]["cell"], f"{100 * errors[i]:+.0f} % ± {100 * noise[i]:.0f} %")
 
 
-def draw(rows, found):
-    """Errors of a95 as a map, a panel per model."""
-    table = {tuple(row["cell"][:4]): 100 * one["a95"] for row, one in zip(rows, found, strict=True)}
-    figure, axes = plt.subplots(1, 2, figsize=(9.0, 5.2), sharey=True, layout="constrained")
-    for ax, model in zip(axes, MODELS, strict=True):
-        lines = list(product(DENSITIES, DAMPINGS))
-        errors = np.array([[table[model, f, *line] for f in FREQUENCIES] for line in lines])
-        image = ax.imshow(errors, cmap="RdBu_r", vmin=-30, vmax=30, aspect="auto")
-        for (i, j), value in np.ndenumerate(errors):
-            ax.text(j, i, f"{value:+.0f}", ha="center", va="center", fontsize=7)
-        ax.set_title(model, loc="left")
-        ax.set_xticks(range(len(FREQUENCIES)), [f"{f:g}" for f in FREQUENCIES])
-        ax.set_yticks(range(len(lines)), [f"{d:g}, {100 * xi:g}" for d, xi in lines])
-        ax.set_xlabel("$f_B$ [Hz]")
-    axes[0].set_ylabel(r"density [1/m²], $\xi_B$ [%]")
-    figure.colorbar(image, ax=axes, label="estimate over Monte Carlo, less one [%]", extend="both")
-    figure.savefig(FIGURE, dpi=120)
-
-
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         run(int(sys.argv[1]))
     kept = json.loads(KEPT.read_text())
     errors = [compared(row) for row in kept]
     report(kept, errors)
-    draw(kept, errors)
