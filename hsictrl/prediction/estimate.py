@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, final
 
 import numpy as np
@@ -12,7 +12,7 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import OccupiedBridge, couple
-from hsictrl.crowd import CrowdFlow
+from hsictrl.crowd import CrowdFlow, resonant_step_frequency
 from hsictrl.crowd.average import mean_crowd
 from hsictrl.crowd.traffic import step_remarks
 from hsictrl.prediction.extremes import envelope_correlation, independent_peaks, peak_factor
@@ -24,6 +24,7 @@ from hsictrl.walking import WalkingForce, ZivanovicForce
 MODELS = ("MF", "PMC")
 SMOOTH = 12            # knots of the dynamic stiffness in half the width of the narrowest resonance of a body
 COARSEST = 0.05        # Hz between these knots, at most
+CROWDS_DIFFER = 0.01   # in the resonances that they give a bridge, relative
 LARGEST = 2**20        # frequencies of a spectrum that still takes about a second
 
 
@@ -157,7 +158,17 @@ def spectral_estimate(
     frequency = effective(system).frequency if model == "PMC" else bridge.modes[0].frequency
     steps = StepRule(*flow.step_rule_on(bridge, frequency))
     density, band = _acceleration(system, flow, force, steps)
-    return _estimate(system, density, band, steps, percentile)
+    found = _estimate(system, density, band, steps, percentile)
+    return replace(found, remarks=(*found.remarks, *_switches(frequency))) if model == "PMC" else found
+
+
+def _switches(frequency: float) -> tuple[str, ...]:
+    """What to say where crowds of one flow are tuned to different harmonics."""
+    harmonics = {resonant_step_frequency(frequency * (1 + part * CROWDS_DIFFER))[1] for part in (-1, 0, 1)}
+    if len(harmonics) == 1:
+        return ()
+    return (f"at a resonance of {frequency:.3f} Hz one crowd is tuned to harmonic {min(harmonics)} and the next to "
+            f"harmonic {max(harmonics)}: this is the average crowd's response, so take monte_carlo",)
 
 
 def _checked(model: str, bridge: Any, flow: Any, force: WalkingForce | None) -> WalkingForce:
