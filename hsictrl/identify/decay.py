@@ -217,7 +217,7 @@ def _decay(moments: Array, values: Array, offset: float, record: ct.TimeResponse
     damping = _ratio(-fall.slope)
     share = 1 - damping**2
     error = share**1.5 / (2 * np.pi) * fall.error
-    frequency = 1 / (pace.slope * np.sqrt(share))
+    frequency = 1 / (pace.slope * share**0.5)
     spread = frequency * float(np.hypot(pace.error / pace.slope, damping * error / share))
     return FreeDecay(
         frequency=frequency, frequency_error=spread,

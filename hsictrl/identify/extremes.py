@@ -7,7 +7,7 @@ from scipy.signal import find_peaks
 
 from hsictrl._checks import Array
 
-FEWEST = 10             # samples a period, below which a parabola is no picture of a peak
+FEWEST = 8              # samples a period, below which a parabola is no picture of a peak
 APART = 0.7             # extremes of one sign lie at least so far apart [periods]
 WINDOW = 1 / 6          # a parabola is fitted so far to either side of an extreme [periods]
 
@@ -16,7 +16,7 @@ def extremes(time: Array, signal: Array) -> tuple[Array, Array, Array]:
     """Times, values and signs of the maxima (+1) and minima (-1) of an evenly sampled vibration, in order."""
     period = _samples_a_period(signal)
     if period < FEWEST:
-        raise ValueError(f"record must hold at least {FEWEST} samples a period, got {period:.2g}; sample it faster, "
+        raise ValueError(f"record must hold at least {FEWEST} samples a period, got {period:.3g}; sample it faster, "
                          "or filter out what vibrates faster")
     found = [_refined(sign * signal, period) for sign in (1, -1)]
     at = np.concatenate([each[0] for each in found])
