@@ -198,7 +198,7 @@ def test_refused_by_kind(given: dict[str, Any], says: str) -> None:
 
 
 @pytest.mark.parametrize(("given", "says"), [
-    ({"record": np.where(TIME == TIME[7], np.nan, DECAY)}, r"record\[7\] must be finite, got nan; cut or fill"),
+    ({"record": np.where(TIME[7] == TIME, np.nan, DECAY)}, r"record\[7\] must be finite, got nan; cut or fill"),
     ({"timepts": TIME**2}, "times of a record must increase evenly, got steps from .* s; use"),
     ({"timepts": TIME[1:]}, r"record must hold one value per output and time, got shape \(\d+,\) for \d+ times; give"),
     ({"record": np.array([[DECAY]])}, r"one value per output and time, got shape \(1, 1, \d+\) .*; give one trace"),
