@@ -146,7 +146,9 @@ def test_every_output_of_a_bridge_decays_alike() -> None:
     bridge = hsi.reference_bridge(frequency=2.0, damping=0.005)
     response = ct.initial_response(bridge.ss(at=[25.0]), np.arange(0.0, 60.0, 0.01), [1e-3, 0.0])
     for output in range(3):
-        assert tuple(hsi.free_decay(response, output=output)) == pytest.approx((2.0, 0.005), rel=1e-3)
+        found = hsi.free_decay(response, output=output)
+        np.testing.assert_array_equal(found.record.outputs, response.outputs[output])
+        assert tuple(found) == pytest.approx((2.0, 0.005), rel=1e-3)
 
 
 def test_an_occupied_bridge_decays_by_its_pole() -> None:
