@@ -9,6 +9,7 @@ from hsictrl.bridge import BeamShape, Footbridge, MeasuredBridge, Mode, Shape, S
 from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, iso10137_limit
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
 from hsictrl.crowd import CrowdFlow, Traffic, Walker, Walkers, resonant_step_frequency, weidmann_speed
+from hsictrl.identify import FreeDecay, free_decay
 from hsictrl.pedestrian import Crowd, Pedestrian, Population
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
 from hsictrl.resonance import (
@@ -39,12 +40,12 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "Ledger", "MainHarmonics", "MeanRule",
+    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "Ledger", "MainHarmonics", "MeanRule",
     "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian",
     "PercentileRule", "Population", "Prediction", "Shape", "Simulation", "SineShape", "SpectralEstimate",
     "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
     "comfort_class", "couple", "design_acceleration", "effective", "effective_along", "effective_map",
-    "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo",
-    "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
-    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
+    "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit",
+    "monte_carlo", "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate",
+    "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]

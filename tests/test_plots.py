@@ -26,6 +26,7 @@ from hsictrl.plots import (
     contact_force_plot,
     convergence_plot,
     crossing_animation,
+    decay_plot,
     effective_map_plot,
     effective_panels,
     frf_plot,
@@ -66,6 +67,7 @@ MARKS = {"steps": [1.9, 3.8], "bridge": 2.0}
 MAPS = {"few": np.add.outer([0.0, 1.0, 2.0], [0.0, 1.0]), "many": np.add.outer([4.0, 5.0, 6.0], [0.0, 2.0])}
 PERSONS = np.where(TIME < 5.0, 3, 4)
 STUDIES = [study(1.0), study(0.3)]
+DECAY = hsi.free_decay(0.3 + np.exp(-0.4 * TIME) * np.cos(4 * np.pi * TIME), timepts=TIME)
 MAP = {f"μ = {mu}": {"frequency": np.outer([1.0, 0.9, 1.1], np.ones(301)), "damping": np.full((3, 301), mu)}
        for mu in (0.1, 0.2)}
 
@@ -91,6 +93,7 @@ DRAWINGS = {
     "frf": (1, lambda ax: frf_plot(FRFS, effective=FOUND, ax=ax)),
     "response": (1, lambda ax: response_plot(RECORDS, ax=ax)),
     "convergence": (1, lambda ax: convergence_plot(STUDIES, ax=ax)),
+    "decay": (2, lambda ax: decay_plot(DECAY, ax=ax)),
     "assessment": (3, lambda ax: assessment_figure(
         frfs=FRFS, effective=FOUND, responses=RECORDS, ensembles=STUDIES, title="Bridge", ax=ax)),
     "map": (2, lambda ax: effective_map_plot(HERTZ, MAP, ax=ax)),
@@ -144,7 +147,7 @@ def test_legends_cover_no_data_and_lie_within_the_figure(name: str) -> None:
             assert plot.figure.bbox.count_contains(legend.get_window_extent().corners()) == 4
 
 
-@pytest.mark.parametrize("name", ["assessment", "normalised", "simulation"])
+@pytest.mark.parametrize("name", ["assessment", "decay", "normalised", "simulation"])
 def test_titles_of_panels_do_not_meet_the_legends(name: str) -> None:
     plot = DRAWINGS[name][1](None)
     plot.figure.canvas.draw()
@@ -396,6 +399,33 @@ def test_convergence_refusals() -> None:
         convergence_plot(several)
     with pytest.raises(TypeError, match="ensembles must be of type Ensemble, got ndarray; run hsictrl"):
         convergence_plot(STUDIES[0].samples)
+
+
+# free decay
+
+def test_decay_draws_the_record_its_extremes_and_an_envelope_through_them() -> None:
+    trace, extremes, above, below = decay_plot(DECAY, quantity="Displacement [mm]").lines[0, 0]
+    np.testing.assert_array_equal(trace.get_xydata(), np.column_stack([TIME, DECAY.record.outputs]))
+    np.testing.assert_array_equal(extremes.get_xydata(), np.column_stack([DECAY.times, DECAY.values]))
+    np.testing.assert_allclose(above.get_ydata() - 0.3, np.exp(-0.4 * above.get_xdata()), rtol=0.01)
+    np.testing.assert_allclose(above.get_ydata() + below.get_ydata(), 0.6, rtol=0.01)
+    assert trace.axes.get_ylabel() == "Displacement [mm]"
+
+
+def test_decay_draws_logarithms_over_cycles_and_their_line() -> None:
+    """A decay by exp(-0.4 t) at 2 Hz loses 0.2 in a cycle."""
+    plot = decay_plot(DECAY)
+    extremes, line = plot.lines[1, 0]
+    np.testing.assert_allclose(np.diff(extremes.get_ydata()) / np.diff(extremes.get_xdata()), -0.2, rtol=0.01)
+    (start, end), (high, low) = line.get_xdata(), line.get_ydata()
+    assert (low - high) / (end - start) == pytest.approx(-0.2, rel=1e-3)
+    assert high == pytest.approx(extremes.get_ydata()[0], abs=1e-3)
+    assert entries(plot, 1) == ["extremes", "slope −0.2, R² = 1.0000"]
+
+
+def test_decay_refusal() -> None:
+    with pytest.raises(TypeError, match="decay must be of type FreeDecay, got TimeResponseData; give what"):
+        decay_plot(RECORDS[0])
 
 
 # figures of several panels

@@ -10,6 +10,7 @@ from hsictrl.plots.animation import crossing_animation
 from hsictrl.plots.bars import bars_plot
 from hsictrl.plots.composed import assessment_figure, simulation_figure
 from hsictrl.plots.convergence import convergence_plot
+from hsictrl.plots.decay import decay_plot
 from hsictrl.plots.effective_map import effective_map_plot, effective_panels
 from hsictrl.plots.files import animation_endings, file_endings, save, save_animation
 from hsictrl.plots.frequency import frf_plot, normalised_frf_plot
@@ -20,7 +21,7 @@ from hsictrl.plots.spectrum import spectrum_plot
 
 __all__ = [
     "animation_endings", "assessment_figure", "bars_plot", "contact_force_plot", "convergence_plot",
-    "crossing_animation", "effective_map_plot", "effective_panels", "file_endings", "frf_plot", "map_plot",
-    "models_plot", "normalised_frf_plot", "persons_plot", "response_plot", "save", "save_animation",
+    "crossing_animation", "decay_plot", "effective_map_plot", "effective_panels", "file_endings", "frf_plot",
+    "map_plot", "models_plot", "normalised_frf_plot", "persons_plot", "response_plot", "save", "save_animation",
     "simulation_figure", "spectrum_plot",
 ]
