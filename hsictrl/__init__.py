@@ -52,8 +52,8 @@ __all__ = [
     "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian",
     "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",
     "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce",
-    "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "effective", "effective_along", "effective_map",
-    "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo",
-    "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
-    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
+    "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "effective", "effective_along",
+    "effective_map", "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect",
+    "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency",
+    "simulate", "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]

@@ -18,6 +18,8 @@ from hsictrl.bridge.shapes import Shape
 _DEGREE = 5
 # Between closer nodes the spline swings, and enlarges what an export has rounded.
 _CLOSEST = 1 / 20
+# Antinodes that differ by less are equals: the spline errs as much.
+_EQUAL = 1e-6
 # Exact for the square of a piece of the spline.
 _GAUSS = np.polynomial.legendre.leggauss(_DEGREE + 1)
 
@@ -128,7 +130,7 @@ class SampledShape(Shape):
             for j, y in enumerate(np.asarray(self.y)):
                 x = np.union1d(self.x, _roots(spline.derivative(), j))
                 found += [(value, place, float(y)) for value, place in zip(spline(x)[:, j], x, strict=True)]
-        most = (1 - 1e-9) * max(abs(value) for value, _, _ in found)
+        most = (1 - _EQUAL) * max(abs(value) for value, _, _ in found)
         scale, *antinode = next(one for one in found if abs(one[0]) >= most)
         return float(scale), (float(antinode[0]), antinode[1])
 
