@@ -124,12 +124,13 @@ class SampledShape(Shape):
         return np.stack([np.interp(y, np.asarray(self.y), line) for line in np.eye(np.size(self.y))], axis=-1)
 
     def _largest(self) -> tuple[float, tuple[float, float]]:
-        """The largest value, by its absolute, on any line; and the first place that has it."""
+        """The largest value, by its absolute, and the place that has it: the first on the line next to the centre."""
         found: list[tuple[float, float, float]] = []
-        for spline in self._splines.values():
-            for j, y in enumerate(np.asarray(self.y)):
+        lines = np.asarray(self.y)
+        for j in np.argsort(np.abs(lines), kind="stable"):
+            for spline in self._splines.values():
                 x = np.union1d(self.x, _roots(spline.derivative(), j))
-                found += [(value, place, float(y)) for value, place in zip(spline(x)[:, j], x, strict=True)]
+                found += [(value, place, float(lines[j])) for value, place in zip(spline(x)[:, j], x, strict=True)]
         most = (1 - _EQUAL) * max(abs(value) for value, _, _ in found)
         scale, *antinode = next(one for one in found if abs(one[0]) >= most)
         return float(scale), (float(antinode[0]), antinode[1])

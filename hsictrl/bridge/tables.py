@@ -88,10 +88,10 @@ class _Grid:
                              f"from {self.y[0]:g} to {self.y[-1]:g}; count y from the centre line of the deck")
 
     def lines(self, width: float) -> tuple[Array, Array]:
-        """Lines from edge to edge of a deck, and the weights with which they follow from those of the nodes."""
+        """Lines from edge to edge, the centre among them, and the weights with which those of the nodes give them."""
         if len(self.y) == 1:
             return np.zeros(1), np.ones((1, 1))
-        lines = np.unique([-width / 2, *self.y[np.abs(self.y) < width / 2], width / 2])
+        lines = np.unique([-width / 2, 0.0, *self.y[np.abs(self.y) < width / 2], width / 2])
         return lines, make_interp_spline(self.y, np.eye(len(self.y)), k=1)(lines)
 
 
