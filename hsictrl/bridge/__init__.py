@@ -3,6 +3,8 @@
 from hsictrl.bridge.measured import MeasuredBridge
 from hsictrl.bridge.modal import Footbridge, reference_bridge
 from hsictrl.bridge.mode import Mode
+from hsictrl.bridge.sampled import SampledShape
 from hsictrl.bridge.shapes import BeamShape, Shape, SineShape
 
-__all__ = ["BeamShape", "Footbridge", "MeasuredBridge", "Mode", "Shape", "SineShape", "reference_bridge"]
+__all__ = ["BeamShape", "Footbridge", "MeasuredBridge", "Mode", "SampledShape", "Shape", "SineShape",
+           "reference_bridge"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, final
 
 import control as ct
@@ -15,6 +16,7 @@ from hsictrl._checks import Array
 from hsictrl._names import labels
 from hsictrl.bridge.mode import Mode
 from hsictrl.bridge.shapes import Shape, SineShape, beam_modes
+from hsictrl.bridge.tables import read_modes
 
 
 @final
@@ -35,6 +37,8 @@ class Footbridge:
         Walkable width of the deck [m].
     mass : float
         Mass of the whole bridge, to which a crowd's mass ratio refers (eq. 13) [kg].
+    remarks : sequence of str
+        What was inferred where the bridge was read from tables.
 
     Examples
     --------
@@ -48,9 +52,10 @@ class Footbridge:
     length: float
     width: float
     mass: float
+    remarks: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        check.store(self, modes=_modes(self.modes))
+        check.store(self, modes=_modes(self.modes), remarks=tuple(self.remarks))
         for name, unit in (("length", "m"), ("width", "m"), ("mass", "kg")):
             check.store(self, **{name: check.number(name, getattr(self, name), above=0, remedy=f"give {unit}")})
         for mode in self.modes:
@@ -131,6 +136,57 @@ class Footbridge:
         """
         shapes = beam_modes(spans, ends=ends, n_modes=n_modes)
         return cls._uniform(shapes, float(np.sum(spans)), width, mass, frequency, damping)
+
+    @classmethod
+    def from_csv(cls, shapes: str | Path, *, modes: str | Path, width: float, mass: float) -> Footbridge:
+        """Modes of a finite-element model, from a table of nodes and a table of modes.
+
+        Units and scaling are checked; what was inferred stands in `remarks`. The deck reaches from the first
+        node to the last.
+
+        Parameters
+        ----------
+        shapes : str or Path
+            CSV with a node in each row, in any order: columns x [m], y if there are several lines of nodes along
+            the deck [m], and the components vertical_1, lateral_1, vertical_2, …, of which every mode has one or
+            both.
+        modes : str or Path
+            CSV with a mode in each row: columns mode, the number 1, 2, … behind its components, frequency [Hz],
+            damping [-], and modal_mass [kg], which belongs to the shape as it is scaled in `shapes`. Without
+            modal_mass all shapes are taken as mass-normalised [1/√kg].
+        width : float
+            Walkable width of the deck; between lines of nodes and out to its edges shapes are straight [m].
+        mass : float
+            Mass of the whole bridge [kg].
+
+        Returns
+        -------
+        Footbridge
+
+        Raises
+        ------
+        ValueError
+            If a table can't be read or holds what no footbridge has; the message names file, row and column.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> folder = Path(tempfile.mkdtemp())
+        >>> rows = [f"{x}, {np.sin(np.pi * x / 50) / np.sqrt(25e3)}" for x in range(51)]
+        >>> _ = (folder / "nodes.csv").write_text("\\n".join(["x, vertical_1", *rows]))
+        >>> _ = (folder / "modes.csv").write_text("mode, frequency, damping\\n1, 2.0, 0.005")
+        >>> bridge = Footbridge.from_csv(folder / "nodes.csv", modes=folder / "modes.csv", width=3.0, mass=50e3)
+        >>> print(bridge, *bridge.remarks, sep="\\n")
+        footbridge 50 m × 3 m, 50000 kg
+          mode 0: 2.000 Hz, 0.50 %, 25000 kg
+        51 nodes along the deck on 1 line(s); x is counted from 0 m, where they begin
+        mode 1: 0.00632456 at its antinode (25, 0) m, taken as mass-normalised (1/√kg); scaled to one:
+        25000 kg, 50 % of the bridge's mass
+        """
+        width = check.number("width", width, above=0, remedy="give m")
+        mass = check.number("mass", mass, above=0, remedy="give kg")
+        read = read_modes(Path(shapes), Path(modes), width=width, mass=mass)
+        return cls(modes=read.modes, length=read.length, width=width, mass=mass, remarks=read.remarks)
 
     @classmethod
     def _uniform(

@@ -46,7 +46,7 @@ def assess(
     A description; any of its tables may be left out:
         seed = 1
         [bridge]
-        kind = "simply_supported"     # or "beam" with spans = […], or "reference"
+        kind = "simply_supported"     # or "beam" with spans = […], "csv", "reference"
         length = 50.0                 # m
         width = 3.0                   # m
         mass = 50e3                   # kg

@@ -30,6 +30,7 @@ Unknown keys are refused. An example::
 "reference"          ; frequency, damping, modal_mass
 "simply_supported"   length, width, mass, frequency, damping; n_modes
 "beam"               spans, width, mass, frequency, damping; ends, n_modes
+"csv"                shapes, modes (files of `Footbridge.from_csv`, seen from here), width, mass
 ``[traffic]``        ; density or persons, speed, step_frequency (a number or [mean, sd]), weight
 ``[.population]``    ; frequency, damping, mass (a number or [mean, sd]), sprung_ratio
 ``[force]`` model    keys
@@ -169,6 +170,8 @@ _BRIDGES = {
                               {"n_modes": schema.WHOLE}),
     "beam": _Kind(Footbridge.beam, {"spans": schema.NUMBERS, **_BEAM},
                   {"ends": schema.ENDS, "n_modes": schema.WHOLE}),
+    "csv": _Kind(Footbridge.from_csv, {"shapes": schema.FILE, "modes": schema.FILE, "width": schema.NUMBER,
+                                       "mass": schema.NUMBER}),
 }
 _FORCES = {
     "zivanovic": _Kind(ZivanovicForce, may={"spacing": schema.NUMBER, "scaling": schema.TEXT}),

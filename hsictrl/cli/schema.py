@@ -43,6 +43,7 @@ def _all(value: Any, fits: Callable[[Any], bool]) -> bool:
 NUMBER = Expected("a number", "2.5", _number)
 WHOLE = Expected("a whole number", "2", _whole)
 TEXT = Expected("a word in quotes", '"word"', _text)
+FILE = Expected("a path in quotes", '"nodes.csv"', _text)
 TABLE = Expected("a table", "[name]", lambda value: isinstance(value, dict))
 NUMBERS = Expected("a list of numbers", "[20.0, 30.0]", lambda value: _all(value, _number))
 WORDS = Expected("a word in quotes or a list of them", '["one", "other"]',
@@ -122,6 +123,8 @@ class Table:
         value = self.values[key]
         if not expected.fits(value):
             self.refuse(key, f"{key} must be {expected.words}, got {value!r}; write it like {expected.example}")
+        if expected is FILE:
+            return self.path.parent / value
         return tuple(value) if isinstance(value, list) else value
 
     def _key_in(self, message: str) -> str | None:

@@ -63,7 +63,8 @@ FLOW = Column("d", "[1/m²]", lambda row: f"{row['density_per_m2']:.3g}\nn={row[
 
 def case_notes(case: Description) -> list[str]:
     """What was studied, in the first lines below a table."""
-    return [str(case.bridge), f"Force: {case.force}. Seed: {case.seed}. d, n: density and number of people."]
+    inferred = [f"Remark on the bridge: {remark}." for remark in case.bridge.remarks]
+    return [str(case.bridge), *inferred, f"Force: {case.force}. Seed: {case.seed}. d, n: density and number of people."]
 
 
 def interval_note(rule: PercentileRule | MeanRule) -> str:
