@@ -5,7 +5,17 @@ loop around the bridge. Van Nimmen, Lombaert, De Roeck & Van den Broeck (2017) i
 """
 
 from hsictrl.assessment import Assessment, assess, guide_value, study_effective
-from hsictrl.bridge import BeamShape, Footbridge, MeasuredBridge, Mode, Shape, SineShape, reference_bridge
+from hsictrl.bridge import (
+    BeamShape,
+    Footbridge,
+    LateralTorsionShape,
+    MeasuredBridge,
+    Mode,
+    Shape,
+    SineShape,
+    eeklo_bridge,
+    reference_bridge,
+)
 from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, iso10137_limit
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
 from hsictrl.crowd import CrowdFlow, Traffic, Walker, Walkers, resonant_step_frequency, weidmann_speed
@@ -39,12 +49,12 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "Ledger", "MainHarmonics", "MeanRule",
-    "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian",
+    "Ensemble", "Footbridge", "ForceLines", "HarmonicForce", "LateralTorsionShape", "Ledger", "MainHarmonics",
+    "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian",
     "PercentileRule", "Population", "Prediction", "Shape", "Simulation", "SineShape", "SpectralEstimate",
-    "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
-    "comfort_class", "couple", "design_acceleration", "effective", "effective_along", "effective_map",
-    "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo",
-    "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
-    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
+    "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce",
+    "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective", "effective_along",
+    "effective_map", "effective_sensitivity", "en1990_limit", "frf", "guide_value", "interconnect",
+    "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency",
+    "simulate", "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]
