@@ -75,11 +75,12 @@ def _name(axes: np.ndarray, titles: list[str]) -> None:
 
 def _legend(ax: Axes, drawn: list[BandAndMean]) -> Legend:
     return ax.legend(drawn, [str(mean.get_label()) for _, mean in drawn], frameon=False, fontsize="small",
-                     title="mean, and 5 % to 95 % as a band", title_fontsize="small", loc="lower left")
+                     title="mean, and 5 % to 95 % as a band", title_fontsize="small", alignment="left")
 
 
 def _panel(ax: Axes, crowds: dict[str, dict[str, Any]], key: str, scale: float) -> list[BandAndMean]:
     canvas.grid(ax)
+    ax.margins(x=0.03)
     ax.ticklabel_format(useOffset=False)
     return [_draw(ax, i, one["persons"], scale * one[key], label, one["hatched"])
             for i, (label, one) in enumerate(crowds.items())]
