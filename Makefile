@@ -2,7 +2,7 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
-STUDIES := fig4 table2 readings load_cycles fig8 maps stationary
+STUDIES := fig4 fig7 table2 readings load_cycles fig8 maps stationary
 
 .PHONY: demo test bench docs paper clean
 

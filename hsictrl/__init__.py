@@ -8,11 +8,13 @@ from hsictrl.assessment import Assessment, assess, guide_value, study_effective
 from hsictrl.bridge import (
     BeamShape,
     Footbridge,
+    LateralTorsionShape,
     MeasuredBridge,
     Mode,
     SampledShape,
     Shape,
     SineShape,
+    eeklo_bridge,
     reference_bridge,
 )
 from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, iso10137_limit
@@ -49,12 +51,13 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "Ledger", "MainHarmonics", "MeanRule",
-    "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule",
-    "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape", "SpectralEstimate", "StopRule",
-    "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess",
-    "comfort_class", "couple", "design_acceleration", "effective", "effective_along", "effective_map",
-    "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit",
-    "monte_carlo", "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate",
-    "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
+    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape", "Ledger",
+    "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
+    "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",
+    "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce",
+    "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective",
+    "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value",
+    "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge",
+    "resonant_step_frequency", "simulate", "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune",
+    "weidmann_speed",
 ]

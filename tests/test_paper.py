@@ -243,7 +243,8 @@ def test_added_mass_of_a_soft_bridge_by_hand() -> None:
 
 def test_unknown_names_and_grids_are_refused() -> None:
     with pytest.raises(ValueError, match="name must be one of 'table1', 'table2', 'readings', 'load_cycles', 'fig1', "
-                                         "'fig2', 'fig3', 'fig4', 'fig8', 'claims', got 'fig99'; choose one"):
+                                         "'fig2', 'fig3', 'fig4', 'fig5', 'fig7', 'fig8', 'maps', 'fig9', 'fig10', "
+                                         "'fig11', 'stationary', 'claims', got 'fig99'; choose one"):
         paper.compute("fig99")
     with pytest.raises(ValueError, match="grid must be one of 'coarse', 'paper', got 'fine'; choose one of these"):
         paper.compute("fig3", grid="fine")

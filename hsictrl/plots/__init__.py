@@ -7,6 +7,7 @@ Figures made here stay open in pyplot: close them with ``matplotlib.pyplot.close
 """
 
 from hsictrl.plots.animation import crossing_animation
+from hsictrl.plots.bands import bands_plot
 from hsictrl.plots.bars import bars_plot
 from hsictrl.plots.composed import assessment_figure, simulation_figure
 from hsictrl.plots.convergence import convergence_plot
@@ -16,12 +17,13 @@ from hsictrl.plots.files import animation_endings, file_endings, save, save_anim
 from hsictrl.plots.frequency import frf_plot, normalised_frf_plot
 from hsictrl.plots.history import persons_plot, response_plot
 from hsictrl.plots.maps import map_plot
+from hsictrl.plots.modes import modes_plot
 from hsictrl.plots.schematic import contact_force_plot, models_plot
 from hsictrl.plots.spectrum import spectrum_plot
 
 __all__ = [
-    "animation_endings", "assessment_figure", "bars_plot", "contact_force_plot", "convergence_plot",
+    "animation_endings", "assessment_figure", "bands_plot", "bars_plot", "contact_force_plot", "convergence_plot",
     "crossing_animation", "decay_plot", "effective_map_plot", "effective_panels", "file_endings", "frf_plot",
-    "map_plot", "models_plot", "normalised_frf_plot", "persons_plot", "response_plot", "save", "save_animation",
-    "simulation_figure", "spectrum_plot",
+    "map_plot", "models_plot", "modes_plot", "normalised_frf_plot", "persons_plot", "response_plot", "save",
+    "save_animation", "simulation_figure", "spectrum_plot",
 ]
