@@ -531,7 +531,7 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("paper table1 --recompute --resume", "must come with a study that runs anew, got table1; leave them out"),
     ("paper fig4 --recompute --ledger TMP/no/a.ledger", "the folder of a ledger must exist, got TMP/no; make it first"),
     ("paper table2 --recompute --ledger TMP/bad.toml", "a ledger must be a file made by hsictrl, got TMP/bad.toml"),
-    ("paper table2 --grid paper", "--grid must come with one of fig9, fig10, fig11, got table2; leave it out"),
+    ("paper table2 --grid paper", "--grid must come with one of maps, fig9, fig10, fig11, got table2; leave it out"),
     ("paper fig3 --processes 0", "processes must be at least 1, got 0"),
 ])
 def test_refusals(tmp_path, words, says):

@@ -155,7 +155,7 @@ def test_interrupted_it_goes_on_to_the_same_digits(study: Path, swept: Result, t
     stopped = run("sweep", study, *WORDS, "--output", tmp_path, code=130)
     assert (stopped.stdout, stopped.stderr, [path.name for path in tmp_path.iterdir()]) == ("", "", ["study.ledger"])
     again = run("sweep", study, *WORDS, "--output", tmp_path, code=2)
-    assert "add --resume to go on with them, or choose another file" in again.stderr
+    assert "give --resume to go on with them, or choose another file" in again.stderr
     held = sum(hsi.Ledger(tmp_path / "study.ledger").trials().values())
     assert 3 * TRIALS <= held < CELLS * TRIALS
     calls[:] = [None] * CELLS * TRIALS

@@ -22,7 +22,19 @@ import pytest
 
 import hsictrl as hsi
 from hsictrl import paper
-from hsictrl.paper import claims, claims_fig8, claims_table2, fig4, fig8, load_cycles, readings, studies, table2
+from hsictrl.paper import (
+    claims,
+    claims_fig8,
+    claims_table2,
+    fig4,
+    fig7,
+    fig8,
+    load_cycles,
+    maps,
+    readings,
+    studies,
+    table2,
+)
 from hsictrl.paper.cells import CELLS, DEFAULT, Cell, Reading, SharedTrafficTrial
 from hsictrl.paper.intervals import Interval, percentile, ratio, verdict
 from hsictrl.paper.reports import Finding, Rows, Run, committed
@@ -224,9 +236,10 @@ def test_recompute_runs_the_study_where_it_is_told(recipe: ModuleType, monkeypat
 
 
 def test_all_studies_share_one_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Under as many labels as there are studies: figure 4, table 2, figure 8, spans, readings."""
+    """Under as many labels as there are studies: figures 4 and 7, table 2, figure 8, spans, readings, two sweeps."""
     labels, ledger = [], hsi.Ledger("not_made.ledger")
-    sizes = {SharedTrafficTrial: 5, fig8.ForcesTrial: 6, load_cycles.LoadCyclesTrial: 3, fig4.SharedCrowdTrial: 1}
+    sizes = {SharedTrafficTrial: 5, fig8.ForcesTrial: 6, load_cycles.LoadCyclesTrial: 3, fig4.SharedCrowdTrial: 1,
+             fig7.PostureTrial: 1}
 
     def made_up(trial: Callable, *, rule: hsi.StopRule, label: str, **how: object) -> hsi.Ensemble:
         assert how["ledger"] is ledger
@@ -240,10 +253,18 @@ def test_all_studies_share_one_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "ratio", lambda first, second: Interval(1.0, 0.9, 1.1))
     monkeypatch.setattr(fig4, "_rows", lambda mass_ratio, ensemble: [
         row for row in committed("fig4") if row["mass_ratio"] == mass_ratio])
+    monkeypatch.setattr(fig7, "_rows", lambda trial, ensemble: [])
+
+    def swept(make: Callable, axes: object, *, label: str, ledger: hsi.Ledger, **how: object) -> str:
+        labels.append(label)
+        return str(ledger)
+    monkeypatch.setattr(maps, "sweep", swept)
+    monkeypatch.setattr(maps, "_rows", lambda given, name: committed(
+        {"r_hsi": "maps", "sf_over_mf": "stationary"}[name]) if given == str(ledger) else [])
     monkeypatch.setattr(claims, "_claims", list)            # nothing is judged
     for name in ("claims", "readings"):
         paper.compute(name, recompute=True, ledger=ledger)
-    assert len(set(labels)) == len(labels) == 4 + 12 + 12 + 4 + 9 * 12
+    assert len(set(labels)) == len(labels) == 4 + len(fig7.TRIALS) + 12 + 12 + 4 + 9 * 12 + 2
 
 
 @pytest.mark.parametrize("trial", [
