@@ -522,7 +522,7 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("simulate --figure TMP/a.gif --animate TMP/a.gif",
      "figure and animation must be two files, got TMP/a.gif for both; rename one"),
     ("paper fig99", "name must be one of 'table1', 'table2', 'readings', 'load_cycles', 'fig1', 'fig2', 'fig3', "
-                    "'fig4', 'fig5', 'fig7', 'fig8', 'maps', 'fig9', 'fig10', 'fig11', "
+                    "'fig4', 'fig5', 'fig6', 'fig7', 'fig8', 'maps', 'fig9', 'fig10', 'fig11', "
                     "'stationary', 'claims', got 'fig99'; choose"),
     ("paper fig3 --output TMP/no", "the output folder must exist, got TMP/no; make it first"),
     ("paper table2 --ledger TMP/a.ledger", "--ledger and --resume must come with a study that runs anew, got table2; "

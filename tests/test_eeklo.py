@@ -17,7 +17,7 @@ import pytest
 
 import hsictrl as hsi
 from hsictrl import paper, plots
-from hsictrl.paper import claims, claims_fig7, fig7
+from hsictrl.paper import claims, claims_fig7, fig6, fig7
 from hsictrl.paper.eeklo import BRIDGE, POSTURES, SETUPS, beside_centre, setup
 from hsictrl.paper.fig7 import CONDITIONS, SEED, PostureTrial
 from hsictrl.paper.reports import Finding, Rows, committed
@@ -269,3 +269,22 @@ def test_plots_refuse_what_they_cannot_draw() -> None:
         plots.bands_plot({"a": {"b": {**crowd, "damping": [[0.1, 0.1]] * 2}}})
     with pytest.raises(ValueError, match=r"places\['far'\] must lie on the deck"):
         plots.modes_plot(BRIDGE, {"far": [(50.0, 0.0)]})
+
+
+# figure 6
+
+@pytest.mark.parametrize("posture", POSTURES)
+def test_a_free_decay_reads_the_pole(posture: str) -> None:
+    """Identified from the record alone, against an eigenvalue of the system."""
+    system = fig6.occupied(posture)
+    found, pole = fig6.decay(system), hsi.effective(system, mode=1, method="pole")
+    assert found.damping == pytest.approx(pole.damping, rel=2e-3)
+    assert found.frequency == pytest.approx(pole.frequency, rel=1e-3)
+    assert found.r_squared > 0.999
+
+
+def test_figure_6_has_a_column_per_posture() -> None:
+    report = paper.compute("fig6")
+    assert [row["posture"] for row in report.rows] == list(POSTURES)
+    assert report.draw().axes.shape == (2, 2)
+    assert fig6.straight()[1] is True

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 def paper(
     name: Annotated[str, typer.Argument(metavar="NAME", help="table1, table2, readings, load_cycles, fig1, fig2, fig3, "
-                                                             "fig4, fig5, fig7, fig8, maps, fig9, fig10, fig11, "
+                                                             "fig4 … fig8, maps, fig9, fig10, fig11, "
                                                              "stationary or claims.")],
     recompute: Annotated[bool, typer.Option("--recompute", help="Compute anew, not from committed results.")] = False,
     processes: options.Processes = 1,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import control as ct
 import numpy as np
@@ -16,28 +17,30 @@ from hsictrl.plots import _canvas as canvas
 
 
 def decay_plot(
-    decay: FreeDecay, *, quantity: str = "Acceleration [m/s²]", ax: Sequence[Axes] | np.ndarray | None = None,
+    decay: FreeDecay | Mapping[str, FreeDecay], *, quantity: str = "Acceleration [m/s²]",
+    ax: Sequence[Axes] | np.ndarray | None = None,
 ) -> ct.ControlPlot:
     """Draw a free decay in two panels: the record with its fitted envelope, and the logarithms of its extremes.
 
     Parameters
     ----------
-    decay : FreeDecay
-        As `hsictrl.free_decay` returns it [unit of the record, s].
+    decay : FreeDecay, or mapping of str to FreeDecay
+        As `hsictrl.free_decay` returns it; several, each in a column of its own, by their titles [unit of the record,
+        s].
     quantity : str
         What was recorded, with its unit in brackets.
     ax : array or sequence of matplotlib.axes.Axes, optional
-        Two axes; those of a new figure if not given.
+        Two axes for each decay; those of a new figure if not given.
 
     Returns
     -------
     control.ControlPlot
-        One row per panel: record, extremes, envelope above and below; logarithms, fitted line.
+        Two rows, a column per decay: record, extremes, envelope above and below; logarithms, fitted line.
 
     Raises
     ------
     ValueError
-        If `ax` holds more or fewer than two axes.
+        If `ax` holds more or fewer axes than that.
 
     Examples
     --------
@@ -49,13 +52,20 @@ def decay_plot(
     >>> [line.get_label() for line in plot.lines[1, 0]]
     ['extremes', 'slope −0.05, R² = 1.0000']
     """
-    check.instance("decay", decay, FreeDecay, "give what hsictrl.free_decay returns")
-    axes = canvas.several_axes(ax, 2, figsize=(8.0, 6.0))
+    decays = _by_title(decay)
+    axes = canvas.several_axes(ax, 2, figsize=(4.0 + 4.0 * len(decays), 6.0), columns=len(decays))
     for axis in axes.flat:
         canvas.grid(axis)
-    drawn = [_record(axes[0, 0], decay, quantity), _logarithms(axes[1, 0], decay)]
-    canvas.head(axes.flat, ["Free decay", "Logarithms"])
+    drawn = [_record(axis, one, quantity) for axis, one in zip(axes[0], decays.values(), strict=True)]
+    drawn += [_logarithms(axis, one) for axis, one in zip(axes[1], decays.values(), strict=True)]
+    canvas.head(axes.flat, [*decays, *["Logarithms"] * len(decays)])
     return canvas.control_plot([lines for lines, _ in drawn], axes, [legend for _, legend in drawn])
+
+
+def _by_title(given: Any) -> dict[str, FreeDecay]:
+    remedy = "give what hsictrl.free_decay returns"
+    decays = check.entries("decay", given, "decay", remedy) if isinstance(given, Mapping) else {"Free decay": given}
+    return {title: check.instance("decay", one, FreeDecay, remedy) for title, one in decays.items()}
 
 
 def _record(ax: Axes, decay: FreeDecay, quantity: str) -> tuple[list[Line2D], Legend]:
