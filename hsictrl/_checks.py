@@ -102,6 +102,14 @@ def entries(name: str, given: Any, what: str, remedy: str) -> Mapping[str, Any]:
     return given
 
 
+def several(name: str, given: Any) -> tuple[Any, ...]:
+    """Return the members of a list or tuple that holds something; refuse anything else."""
+    listed = tuple(instance(name, given, (list, tuple), "give a list"))
+    if not listed:
+        raise ValueError(f"{name} must hold at least one, got none; give a list of some")
+    return listed
+
+
 def store(thing: Any, **values: Any) -> None:
     """Set attributes of a frozen instance, while it is being made."""
     for name, value in values.items():

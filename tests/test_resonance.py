@@ -381,6 +381,8 @@ def test_nobody_has_no_sensitivity():
      r"frequencies\[0\] must be abo"),
     (lambda: hsi.effective_map(hsi.couple(beam(), hsi.Pedestrian(damping=0.001), [25.0]).condensed, [2.0], [0.1]),
      ValueError, r"the crowd's damping\[0\] must be at least 0.005, got 0.001; use effective\(\)"),
+    (lambda: hsi.effective_map(hsi.couple(beam(), hsi.Pedestrian(), [25.0]).condensed, [2.0], [0.005, 0.8]), ValueError,
+     r"every bridge must have a peak of \|H\|, got one without; use effective\(\) for each"),
 ])
 def test_refusals(make, error, message):
     with pytest.raises(error, match=message):

@@ -10,6 +10,7 @@ from hsictrl import (
     Footbridge,
     HarmonicForce,
     Mode,
+    Population,
     SineShape,
     Traffic,
     Walker,
@@ -125,3 +126,46 @@ def test_a_trial_of_peaks_refuses(changes, message):
     given = {"models": ["MF"], "bridges": bridges(), "flow": CrowdFlow(density=0.2)} | changes
     with pytest.raises((TypeError, ValueError), match=message):
         PeaksTrial(**given)
+
+
+# what a second look found
+
+def sideways(**changes):
+    return Population(frequency=(0.75, 0.1), damping=(0.3, 0.0), direction="lateral", **changes)
+
+
+def test_lateral_bodies_leave_a_vertical_mode_alone():
+    [bridge] = bridges(dampings=[0.005], masses=[20e3])
+    traffic = CrowdFlow(density=0.2, population=sideways()).sample(bridge, rng=np.random.default_rng(1))
+    [[mf], [pmc]] = tuned_peaks(["MF", "PMC"], [bridge], traffic)
+    assert pmc == pytest.approx(one_by_one("PMC", [bridge], traffic)[0], rel=1e-6)
+    assert pmc == pytest.approx(mf, rel=1e-2)       # but for a longer warm-up: the bodies take part in nothing
+
+
+def test_bodies_with_hardly_any_damping():
+    several = bridges(dampings=[0.005, 0.02], masses=[20e3])
+    flow = CrowdFlow(density=0.2, population=Population(frequency=(3.25, 0.3), damping=(0.004, 0.0)))
+    traffic = flow.sample(several[0], rng=np.random.default_rng(1))
+    np.testing.assert_allclose(peaks("PMC", several, traffic), one_by_one("PMC", several, traffic), rtol=1e-3)
+
+
+def test_a_bridge_without_a_peak_is_refused_as_alone():
+    [bridge] = bridges(dampings=[0.8], masses=[20e3])
+    traffic = CrowdFlow(density=0.2).sample(bridge, rng=np.random.default_rng(2))
+    for road in (one_by_one, peaks):
+        with pytest.raises(ValueError, match=r"the band must hold a peak of \|H\|"):
+            road("PMC", [bridge], traffic)
+
+
+def test_a_light_bridge_under_a_dense_crowd():
+    [bridge] = bridges(frequencies=[6.0], dampings=[0.02], masses=[1e3])
+    traffic = CrowdFlow(density=1.5).sample(bridge, rng=np.random.default_rng(1))
+    np.testing.assert_allclose(peaks("PMC", [bridge], traffic), one_by_one("PMC", [bridge], traffic), rtol=1e-6)
+
+
+def test_decks_are_the_same_by_value():
+    several = [Footbridge.beam(spans=[50.0], width=3.0, mass=5e4, frequency=f, damping=0.01) for f in (2.0, 2.5)]
+    traffic = CrowdFlow(density=0.2).sample(several[0], rng=np.random.default_rng(1))
+    np.testing.assert_allclose(peaks("MF", several, traffic), one_by_one("MF", several, traffic), rtol=2e-3)
+    assert several[0].modes[0].shape == several[1].modes[0].shape != Footbridge.beam(
+        spans=[25.0, 25.0], width=3.0, mass=5e4, frequency=2.0, damping=0.01).modes[0].shape

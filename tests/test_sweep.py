@@ -343,6 +343,9 @@ def test_rows_that_are_not_raveled_are_refused() -> None:
      "rule must give one estimate per quantity, got mean, percentile 95; sweep with one of its members"),
     ({"rule": 0.05}, TypeError, r"rule must be of type StopRule, got float; give PercentileRule"),
     ({"seed": -1}, ValueError, "seed must be at least 0, got -1"),
+    ({"label": 3}, TypeError, "label must be of type str, got int; give the sweep a name"),
+    ({"make": lambda a, b: np.random.Generator.random, "axes": {"a": ["x", "x, b=y"], "b": ["y, b=y", "y"]}},
+     ValueError, "values must tell cells apart, got two cells called 'sweep, a=x, b=y, b=y'; change a string"),
     ({"ledger": "sweep.ledger"}, TypeError, r"ledger must be of type Ledger, got str; give Ledger\(path\)"),
 ])
 def test_refusals(changed: dict[str, Any], error: type[Exception], message: str) -> None:

@@ -115,7 +115,7 @@ class PeaksTrial:
     force: WalkingForce = field(default_factory=ZivanovicForce)
 
     def __post_init__(self) -> None:
-        check.store(self, models=_several("models", self.models), bridges=_several("bridges", self.bridges))
+        check.store(self, models=check.several("models", self.models), bridges=check.several("bridges", self.bridges))
         for model in self.models:
             check.choice("models", model, SHARED_MODELS)
         for bridge in self.bridges:
@@ -154,7 +154,7 @@ class JointTrial:
     trials: Sequence[PeakTrial | PeaksTrial]
 
     def __post_init__(self) -> None:
-        check.store(self, trials=_several("trials", self.trials))
+        check.store(self, trials=check.several("trials", self.trials))
         for trial in self.trials:
             check.instance("trials", trial, (PeakTrial, PeaksTrial), "give a list of these")
 
@@ -200,11 +200,3 @@ def check_case(bridge: Any, flow: Any) -> None:
     """Refuse what is no bridge, or no flow."""
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
-
-
-def _several(name: str, given: Any) -> tuple[Any, ...]:
-    """The members of a list that holds something."""
-    listed = tuple(check.instance(name, given, (list, tuple), "give a list"))
-    if not listed:
-        raise ValueError(f"{name} must hold at least one, got none; give a list of some")
-    return listed

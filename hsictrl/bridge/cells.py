@@ -131,7 +131,7 @@ def _numbers(path: Path, row: int, cells: list[str], heads: tuple[str, ...]) -> 
 
 def _value(place: str, cell: str) -> float:
     try:
-        value = float(cell)
+        value = float(cell.replace("_", "?"))     # which Python takes for a number
     except ValueError:
         raise ValueError(f"{place}: the cell must be a number, got {cell!r}; write it like 2.5e-3") from None
     return check.number(f"{place}: the cell", value, remedy="leave the mode or the node out")

@@ -84,6 +84,12 @@ class SampledShape(Shape):
                     **{one: values[one] / scale for one in DIRECTIONS})
         check.freeze(self.vertical, self.lateral)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SampledShape) and self._nodes == other._nodes
+
+    def __hash__(self) -> int:
+        return hash(self._nodes)
+
     def __call__(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical") -> Array:
         return self.derivative(x, y, direction, order=0)
 
@@ -106,6 +112,10 @@ class SampledShape(Shape):
     @property
     def mean_absolute(self) -> float:
         return self._mean(np.hypot)
+
+    @property
+    def _nodes(self) -> tuple[bytes, ...]:
+        return tuple(np.asarray(values).tobytes() for values in (self.x, self.y, self.vertical, self.lateral))
 
     def _at_nodes(self, component: str) -> Array:
         remedy = "give a row for each x, and a column for each y"

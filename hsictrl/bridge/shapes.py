@@ -237,6 +237,16 @@ class BeamShape(Shape):
         """Places of the supports, the ends among them [m]."""
         return np.concatenate([[0.0], np.cumsum(self.spans)])
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, BeamShape) and self._beam == other._beam
+
+    def __hash__(self) -> int:
+        return hash(self._beam)
+
+    @property
+    def _beam(self) -> tuple[object, ...]:
+        return (*self.spans.tolist(), self.ends, self.number, self.direction)
+
     @property
     def antinode(self) -> tuple[float, float]:
         return self._antinode, 0.0

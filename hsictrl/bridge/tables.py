@@ -23,6 +23,7 @@ LARGEST_DAMPING = 0.2
 MODAL_MASSES = (100.0, 1e8)     # kg
 # Exports print the same place with such differences.
 _SAME_PLACE = 6                 # digits after the point, of metres
+_MOST_CELLS = 100     # places of a grid for each node
 # A component as small beside the other one is what a solver has left of nothing.
 _NOTHING = 1e-6
 # Modes closer than this are one.
@@ -70,6 +71,9 @@ class _Grid:
         _, first, i = np.unique(along.round(_SAME_PLACE), return_index=True, return_inverse=True)
         y, j = np.unique(across.round(_SAME_PLACE), return_inverse=True)
         nodes.refuse_repeated("x", i * len(y) + j)
+        if len(first) * len(y) > _MOST_CELLS * len(along):     # of scattered nodes; not to be laid out before refused
+            raise ValueError(f"{nodes.path}, columns x and y: every line along the deck must have nodes at the same x, "
+                             f"got {len(along)} nodes at {len(first)} x and {len(y)} y; export whole lines")
         rows = np.full((len(first), len(y)), -1)
         rows[i, j] = np.arange(len(along))
         grid = cls(x=along[first], y=y, rows=rows, remarks=_order(nodes, rows))
@@ -194,6 +198,9 @@ def _mode(table: Cells, index: int, shape: SampledShape) -> Mode:
     """A mode whose modal mass belongs to the shape scaled to one."""
     given = "modal_mass" in table.heads
     as_exported = table.column("modal_mass")[index] if given else 1.0
+    if not 1e-100 < abs(shape.scale) < 1e100:
+        raise ValueError(f"{table.place(index, 'mode')}: the largest value of the shape must be a displacement or "
+                         f"1/√kg, got {shape.scale:g}; see to the units of the export")
     name = f"{table.place(index, 'modal_mass')}: modal mass {as_exported:g} / (largest value {abs(shape.scale):g})²"
     modal_mass = check.number(name, as_exported / shape.scale**2, least=MODAL_MASSES[0], most=MODAL_MASSES[1],
                               remedy=_REMEDIES[given])

@@ -14,14 +14,14 @@ from scipy.interpolate import CubicSpline
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge, Mode
-from hsictrl.coupling import CondensedCrowd
+from hsictrl.coupling import CondensedCrowd, couple
 from hsictrl.crowd import Traffic, resonant_step_frequency
 from hsictrl.prediction.forces import Parts, modal_forces
 from hsictrl.prediction.grid import Grid, largest
 from hsictrl.prediction.models import first_arrival, predict_tuned
 from hsictrl.prediction.refusals import check_vertical
 from hsictrl.prediction.spectral import period
-from hsictrl.resonance import effective_map
+from hsictrl.resonance import effective, effective_map
 
 SHARED_MODELS = ("SF", "MF", "PMC")
 KNOTS = 40     # of the apparent mass in half the width of a resonance
@@ -64,15 +64,15 @@ def tuned_peaks(models: Sequence[str], bridges: Sequence[Footbridge], traffic: T
     array([[1.61, 0.83],
            [1.01, 0.64]])
     """
-    for model in models:
+    for model in check.several("models", models):
         check.choice("models", model, SHARED_MODELS)
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
     deck, table = check_alike(bridges), np.array([_properties(bridge.modes[0]) for bridge in bridges])
-    crowd = _crowd(deck, traffic) if "PMC" in models else None
+    crowd, places = _crowd(deck, traffic) if "PMC" in models else (None, np.empty((0, 2)))
     # what does not push back is found for a modal mass of 1 kg, and answers in inverse proportion to it
     unit, of = np.unique(table * [1, 1, 0] + [0, 0, 1], axis=0, return_inverse=True)
-    groups = {model: _Group.of(unit if crowd is None or model == "MF" else table, crowd if model == "PMC" else None)
-              for model in models if model != "SF"}
+    moving = {"MF": (unit, None), "PMC": (unit if crowd is None else table, crowd)}
+    groups = {model: _Group.of(*moving[model], deck, places) for model in models if model != "SF"}
     found = dict(zip(groups, _peaks(deck, traffic, list(groups.values())), strict=True))
     if "SF" in models:
         found["SF"] = _steady(deck, traffic, unit)
@@ -91,8 +91,8 @@ class _Group:
     decay: Array                    # (k): ξω of their slowest vibration [1/s]
 
     @classmethod
-    def of(cls, systems: Array, crowd: CondensedCrowd | None) -> _Group:
-        resonance, decay = _resonances(systems, crowd)
+    def of(cls, systems: Array, crowd: CondensedCrowd | None, deck: Footbridge, places: Array) -> _Group:
+        resonance, decay = _resonances(systems, crowd, deck, places)
         return cls(systems=systems, crowd=crowd, resonance=resonance, decay=decay)
 
     def peaks(self, force: Array, grid: Grid) -> Array:
@@ -115,9 +115,8 @@ class _Group:
 def _apparent_mass(crowd: CondensedCrowd, growth: float, omega: Array) -> Complex:
     """Apparent mass along growth + iω, by a spline with knots close enough for the narrowest resonance of a body."""
     width = float(np.min(crowd.people.damping * crowd.people.omega))
-    knots = np.linspace(0.0, omega[-1], 4 + int(KNOTS * omega[-1] / width))
-    if len(knots) > len(omega):
-        knots = omega
+    enough = KNOTS * omega[-1] < width * (len(omega) - 4)
+    knots = np.linspace(0.0, omega[-1], 4 + int(KNOTS * omega[-1] / width)) if enough else omega
     return np.asarray(CubicSpline(knots, crowd.apparent_mass(growth + 1j * knots)[:, 0, 0])(omega))
 
 
@@ -147,29 +146,42 @@ def _since(force: Array, grid: Grid, start: float) -> tuple[Array, Grid]:
 
 def _steady(deck: Footbridge, traffic: Traffic, systems: Array) -> Array:
     """Steady states, which are cheap one by one."""
-    bridges = [replace(deck, modes=[replace(deck.modes[0], frequency=frequency, damping=damping)])
-               for frequency, damping, _ in systems]
-    return np.array([predict_tuned("SF", bridge, traffic).peak_acceleration for bridge in bridges])
+    return np.array([predict_tuned("SF", _bridge(deck, *row), traffic).peak_acceleration for row in systems])
 
 
-def _crowd(deck: Footbridge, traffic: Traffic) -> CondensedCrowd | None:
-    """The standing crowd, whose apparent mass on this deck is in kg; none if nobody stands."""
+def _crowd(deck: Footbridge, traffic: Traffic) -> tuple[CondensedCrowd | None, Array]:
+    """The standing crowd, whose apparent mass on this deck is in kg, and its places; none if nobody stands."""
     people, places = traffic.standing_on(deck)
-    return CondensedCrowd(people, deck.participation(places)) if len(people) else None
+    crowd = CondensedCrowd(people, deck.participation(places, people.direction)) if len(people) else None
+    return crowd, places
 
 
-def _resonances(systems: Array, crowd: CondensedCrowd | None) -> tuple[Array, Array]:
+def _resonances(
+    systems: Array, crowd: CondensedCrowd | None, deck: Footbridge, places: Array,
+) -> tuple[Array, Array]:
     """Frequency of each system [Hz], and ξω of its slowest vibration [1/s]."""
     if crowd is None:
         return systems[:, 0], 2 * np.pi * systems[:, 0] * systems[:, 1]
     found = np.empty((len(systems), 2))
     for mass in np.unique(systems[:, 2]):
         rows = np.flatnonzero(systems[:, 2] == mass)
-        (f_b, i), (xi_b, j) = (np.unique(systems[rows, k], return_inverse=True) for k in (0, 1))
-        frequency, damping = effective_map(CondensedCrowd(crowd.people, crowd.rows / np.sqrt(mass)), f_b, xi_b)
-        found[rows] = np.column_stack([frequency[i, j], damping[i, j]])
+        found[rows] = _effective(systems[rows], crowd, deck, places)
     bodies = np.min(crowd.people.damping * crowd.people.omega)
     return found[:, 0], np.minimum(bodies, 2 * np.pi * found.prod(axis=1))
+
+
+def _effective(rows: Array, crowd: CondensedCrowd, deck: Footbridge, places: Array) -> Array:
+    """Effective frequency [Hz] and damping of systems of one modal mass; one by one where that fails at once."""
+    (f_b, i), (xi_b, j) = (np.unique(rows[:, k], return_inverse=True) for k in (0, 1))
+    try:
+        frequency, damping = effective_map(CondensedCrowd(crowd.people, crowd.rows / np.sqrt(rows[0, 2])), f_b, xi_b)
+    except ValueError:
+        return np.array([[*effective(couple(_bridge(deck, *row), crowd.people, places))] for row in rows])
+    return np.column_stack([frequency[i, j], damping[i, j]])
+
+
+def _bridge(deck: Footbridge, frequency: float, damping: float, mass: float) -> Footbridge:
+    return replace(deck, modes=[replace(deck.modes[0], frequency=frequency, damping=damping, modal_mass=mass)])
 
 
 def _grid(traffic: Traffic, deck: Footbridge, parts: Parts, steps: Array, highest: float) -> Grid:
@@ -202,9 +214,7 @@ def check_alike(bridges: Sequence[Footbridge]) -> Footbridge:
     >>> check_alike([reference_bridge(), reference_bridge(damping=0.01)]).modes[0].modal_mass
     1.0
     """
-    if not len(bridges):
-        raise ValueError("bridges must hold at least one, got none; give [reference_bridge()]")
-    for bridge in bridges:
+    for bridge in check.several("bridges", bridges):
         check.instance("bridges", bridge, Footbridge, "describe each by its mode")
         if bridge.n_modes != 1:
             raise ValueError(f"bridges must have one mode each, got {bridge.n_modes}; use predict for each of them")

@@ -38,6 +38,11 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
     damping : array, shape (f, d)
         Effective damping ratios [-].
 
+    Raises
+    ------
+    ValueError
+        If a bridge has no peak, or a body a damping ratio below 0.5 %: `effective` looks more closely, at one bridge.
+
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
@@ -60,6 +65,8 @@ def effective_map(crowd: CondensedCrowd, frequencies: Any, dampings: Any) -> tup
     mass = _tabulated_mass(crowd, band)
     start = _grid_minimum(mass, band, omega_b, xi)
     omega = _refined(mass, start, omega_b, xi)
+    if not np.all(np.abs(np.log(omega / start)) < 2 * np.log(band[1] / band[0]) / POINTS):
+        raise _no_peak()
     return omega / (2 * np.pi), np.sqrt(_inverse_square(mass, omega, omega_b, xi)[0]) / 2
 
 
@@ -77,10 +84,17 @@ def _grid_minimum(mass: CubicSpline, band: tuple[float, float], omega_b: Array, 
     table = mass(grid)
     real, imaginary = (table.real - ratio**2)**2, table.imag - 2 * xi.T[:, :, None] * ratio
     size = np.moveaxis(real + imaginary**2, 0, 1)
-    best = np.clip(np.argmin(size, axis=-1), 1, POINTS - 2)[..., None]
+    best = np.argmin(size, axis=-1)[..., None]
+    if np.any((best == 0) | (best == POINTS - 1)):
+        raise _no_peak()
     left, here, right = (np.take_along_axis(size, best + shift, -1)[..., 0] for shift in (-1, 0, 1))
     shift = 0.5 * (left - right) / (left - 2 * here + right)
     return np.asarray(grid[best[..., 0]] * (grid[1] / grid[0])**np.clip(shift, -1, 1))
+
+
+def _no_peak() -> ValueError:
+    return ValueError("every bridge must have a peak of |H|, got one without; use effective() for each of them, which "
+                      "tells what is wrong with which")
 
 
 def _refined(mass: CubicSpline, omega: Array, omega_b: Array, xi: Array) -> Array:

@@ -241,6 +241,7 @@ def sweep(
     cells, within = _axes("axes", axes), {} if shared is None else _axes("shared", shared)
     _check_names([*axes, *(shared or ())], name, units or {})
     check_callable("make", make, "give a function of one value per axis that returns a trial")
+    check.instance("label", label, str, "give the sweep a name")
     check_study(rule, seed, executor, max_trials, ledger)
     _check_rule(rule)
     shape = (prod(_shape(within)),) if within else ()
@@ -256,7 +257,10 @@ def _trials(make: Callable[..., Trial], cells: Axes, label: str) -> dict[str, Tr
     for values in product(*cells.values()):
         point = dict(zip(cells, values, strict=True))
         where = ", ".join([label, *(f"{name}={_told(value)}" for name, value in point.items())])
-        found[where] = make(**point)
+        if where in found:
+            raise ValueError(f"values must tell cells apart, got two cells called '{where}'; change a string")
+        with _named(where):
+            found[where] = make(**point)
         check_callable(f"what make returns for '{where}'", found[where], "give a function of a numpy.random.Generator")
     return found
 
@@ -276,7 +280,7 @@ def _run(study: Callable[..., Ensemble], trials: Mapping[str, Trial], label: str
 def _named(where: str) -> Iterator[None]:
     try:
         yield
-    except TrialError as error:
+    except (TrialError, TypeError, ValueError) as error:
         error.add_note(f"in the cell '{where}'")
         raise
 
