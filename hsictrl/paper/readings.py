@@ -18,7 +18,7 @@ from hsictrl.paper.table2 import SEED, printed
 from hsictrl.prediction import MODELS
 from hsictrl.study import Ensemble, Ledger, PercentileRule, monte_carlo
 
-TRIALS = 24
+TRIALS = 48
 NEVER = PercentileRule(tolerance=1e-12)    # no percentile settles to that: all readings get the same trials
 READINGS = (
     DEFAULT,
