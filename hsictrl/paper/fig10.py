@@ -18,4 +18,5 @@ def report(run: Run) -> Report:
     return Report(name="fig10", rows=rows, columns=COLUMNS, caption=(
         f"Fig. 10: a95 of the peak acceleration by PMC, with interaction, {rows[0]['trials']} trials a cell, 95 % "
         "intervals; crowds tuned to the occupied bridge"),
-        draw=partial(drawn, rows, "a95_pmc_m_per_s2", quantity=r"$\ddot{u}_\mathrm{HSI,max95}$ [m/s²]", levels=LEVELS))
+        draw=partial(drawn, rows, "a95_pmc", "_m_per_s2", levels=LEVELS,
+                     quantity=r"$\ddot{u}_\mathrm{HSI,max95}$ [m/s²]"))

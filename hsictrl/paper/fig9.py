@@ -19,4 +19,4 @@ def report(run: Run) -> Report:
     return Report(name="fig9", rows=rows, columns=COLUMNS, caption=(
         f"Fig. 9: a95 of the peak acceleration by MF, without interaction, ξ_B {100 * DAMPING:g} %, "
         f"{rows[0]['trials']} trials a cell, 95 % intervals; crowds tuned to the bridge"),
-        draw=partial(drawn, rows, "a95_mf_m_per_s2", quantity=r"$\ddot{u}_\mathrm{F,max95}$ [m/s²]", levels=LEVELS))
+        draw=partial(drawn, rows, "a95_mf", "_m_per_s2", quantity=r"$\ddot{u}_\mathrm{F,max95}$ [m/s²]", levels=LEVELS))

@@ -197,15 +197,17 @@ def over(rows: Rows, name: str, unit: str = "") -> Estimates:
     return Estimates(axes=axes, **dict(zip(("estimate", "low", "high"), ends, strict=True)))
 
 
-def drawn(rows: Rows, key: str, *, quantity: str, levels: tuple[float, ...]) -> ct.ControlPlot:
+def drawn(
+    rows: Rows, name: str, unit: str = "", *, quantity: str, levels: tuple[float, ...],
+) -> ct.ControlPlot:
     """Maps of a quantity over frequency and modal mass: a row per damping, a column per density.
 
     Parameters
     ----------
     rows : list of dict
         Rows of the maps.
-    key : str
-        Which of their numbers.
+    name, unit : str
+        Which of their numbers, as in `over`.
     quantity : str
         What the colour bar calls it.
     levels : tuple of float
@@ -217,9 +219,9 @@ def drawn(rows: Rows, key: str, *, quantity: str, levels: tuple[float, ...]) -> 
     """
     from hsictrl import plots
 
-    densities, frequencies, masses, dampings = (tuple(dict.fromkeys(row[one] for row in rows)) for one in KEYS)
-    values = np.reshape([row[key] for row in rows], (len(densities), len(frequencies), len(masses), len(dampings)))
-    panels = {rf"{density:g}/m², $\xi_B$ {100 * damping:g} %": values[i, :, :, j].T
+    found = over(rows, name, unit)
+    densities, frequencies, masses, dampings = (np.array(values, dtype=float) for values in found.axes.values())
+    panels = {rf"{density:g}/m², $\xi_B$ {100 * damping:g} %": found.estimate[i, :, :, j].T
               for j, damping in enumerate(dampings) for i, density in enumerate(densities)}
-    return plots.map_plot(frequencies, np.array(masses) / 1e3, panels, quantity=quantity, levels=levels,
+    return plots.map_plot(frequencies, masses / 1e3, panels, quantity=quantity, levels=levels,
                           columns=len(densities))

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
 
+from hsictrl._compiled import BORROWING, COMPILED, ONE, THREE, TWO
 from hsictrl.walking.lines import spline
-
-COMPILED: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-BORROWING: dict[str, Any] = {**COMPILED, "_nrt": False}       # what allocates nothing need not count references
-ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)    # unsigned, or every index is checked for its sign
 
 
 @njit(cache=True, **COMPILED)     # its parts are inlined into it

@@ -18,21 +18,17 @@ Arrays of contacts run over n slots: those who are on the deck, and empty ones, 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from hsictrl._checks import Array
+from hsictrl._compiled import BORROWING, COMPILED, ONE, THREE, TWO
 from hsictrl.walking.lines import spline
 
-# No fast mathematics: freely ordered sums are a fifth faster, but round differently in code from a cache.
-COMPILED: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-# What allocates nothing need not count references to arrays: half of the time of a step with ten people.
-BORROWING: dict[str, Any] = {**COMPILED, "_nrt": False}
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
-ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)      # unsigned, or every index is checked for its sign
 # values at 0, ½ and 1 of the quadratic q with given moments ∫ q τⁱ dτ over (0, 1), i = 0, 1, 2
 FROM_MOMENTS = np.linalg.inv([[1 / 6, 2 / 3, 1 / 6], [0, 1 / 3, 1 / 6], [-1 / 60, 1 / 5, 3 / 20]])
 
