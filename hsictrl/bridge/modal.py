@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._names import labels
+from hsictrl.bridge.beams import beam_modes
 from hsictrl.bridge.mode import Mode
-from hsictrl.bridge.shapes import Shape, SineShape, beam_modes
+from hsictrl.bridge.shapes import Shape, SineShape
 from hsictrl.bridge.tables import read_modes
 
 
