@@ -2,6 +2,11 @@
 
 from hsictrl.crowd.flow import CrowdFlow, resonant_step_frequency, settling_time, weidmann_speed
 from hsictrl.crowd.traffic import Traffic
-from hsictrl.crowd.walkers import Walker, Walkers
+from hsictrl.crowd.trajectory import Trajectory
+from hsictrl.crowd.walker import Walker
+from hsictrl.crowd.walkers import Walkers
 
-__all__ = ["CrowdFlow", "Traffic", "Walker", "Walkers", "resonant_step_frequency", "settling_time", "weidmann_speed"]
+__all__ = [
+    "CrowdFlow", "Traffic", "Trajectory", "Walker", "Walkers", "resonant_step_frequency", "settling_time",
+    "weidmann_speed",
+]

@@ -13,7 +13,8 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._draws import retuned
 from hsictrl.bridge import Footbridge
-from hsictrl.crowd.walkers import Walker, Walkers
+from hsictrl.crowd.walker import Walker
+from hsictrl.crowd.walkers import Walkers
 from hsictrl.pedestrian import Crowd
 
 WALKING_RANGE = (1.0, 2.5)
@@ -162,8 +163,7 @@ class Traffic:
             return self.window
         if not len(self.walkers):
             raise ValueError("traffic must hold a walker or a window, got neither; give window=(start, end) in s")
-        departure = self.walkers.arrival + bridge.length / self.walkers.speed
-        return float(self.walkers.arrival.min()), float(departure.max())
+        return float(self.walkers.arrival.min()), float(self.walkers.departure(bridge.length).max())
 
     def standing_on(self, bridge: Footbridge) -> tuple[Crowd, Array]:
         """The crowd that stands for the moving one in a pseudo-moving crowd (section 2.4).
@@ -254,8 +254,8 @@ class Traffic:
         """
         check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
-        walkers = self.walkers.part(bridge.carries_across(self.walkers.offset))
-        left = np.searchsorted(np.sort(walkers.arrival + bridge.length / walkers.speed), times, side="left")
+        walkers = self.walkers.part(self.walkers.carried(bridge))
+        left = np.searchsorted(np.sort(walkers.departure(bridge.length)), times, side="left")
         return np.searchsorted(np.sort(walkers.arrival), times, side="right") - left
 
     def _frozen(self, bridge: Footbridge) -> tuple[Walkers, Array]:
