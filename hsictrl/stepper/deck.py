@@ -38,8 +38,8 @@ class Deck:
 
     Notes
     -----
-    The kernel knows straight ways only: it reads a table of shapes at a constant pace. Whoever follows a trajectory gets
-    tables for one block at a time, which are read in proportion to time.
+    The kernel knows straight ways only: it reads a table of shapes at a constant pace. Whoever follows a trajectory
+    gets tables for one block at a time, which are read in proportion to time.
     """
 
     def __init__(self, crowd: MovingCrowd, step: float, blocks: Array) -> None:
@@ -97,7 +97,7 @@ class Deck:
         self._tabulate(new, np.broadcast_to(x, (len(new), POINTS)), self._offset[new, None])
 
     def _lead(self, who: Indices, block: int) -> None:
-        """Tables of those who follow a trajectory, over a block and a bit, so that its ends are not taken for events."""
+        """Tables of those who follow a trajectory, over a block and a bit: its ends are no events."""
         if not len(who):
             return
         bit, length = 2 * self._step, self._crowd.bridge.length
