@@ -4,6 +4,7 @@ A bridge is a set of modes; a walker is a sprung body that pushes back on the de
 loop around the bridge. Van Nimmen, Lombaert, De Roeck & Van den Broeck (2017) is implemented throughout.
 """
 
+from hsictrl.absorber import Absorber
 from hsictrl.assessment import Assessment, assess, guide_value, study_effective
 from hsictrl.bridge import (
     BeamShape,
@@ -21,7 +22,7 @@ from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, is
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
 from hsictrl.crowd import CrowdFlow, Traffic, Walker, Walkers, resonant_step_frequency, weidmann_speed
 from hsictrl.identify import FreeDecay, free_decay
-from hsictrl.pedestrian import Crowd, Pedestrian, Population
+from hsictrl.pedestrian import Body, Crowd, Pedestrian, Population
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
 from hsictrl.resonance import (
     EffectiveProperties,
@@ -50,7 +51,7 @@ from hsictrl.walking import ForceLines, HarmonicForce, MainHarmonics, WalkingFor
 __version__ = "0.1.0"
 
 __all__ = [
-    "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
+    "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
     "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape", "Ledger",
     "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
     "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",

@@ -26,6 +26,7 @@ class Deck:
     """Arrays of the kernel with as many seats as are needed at once, taken and left between blocks of time.
 
     A walker whose body moves laterally takes two seats: one for the body, one for the force, which is vertical.
+    Absorbers of the bridge have come before anybody, and stay.
 
     Parameters
     ----------
@@ -42,19 +43,28 @@ class Deck:
         self._crowd, self._step = crowd, step
         self._finer = 1 << min(max(0, int(np.log2(TABLES_SUFFICE / step))), FINEST)
         self._walkers = walkers.part(crowd.bridge.carries_across(walkers.offset))
-        lateral = self._walkers.bodies.direction != "vertical"
+        fixed, places = crowd.bridge.fixed
+        bodies, self._n_fixed = fixed + self._walkers.bodies, len(fixed)
+        lateral = (bodies.direction != "vertical") & (np.arange(len(bodies)) >= self._n_fixed)
         self._who = np.concatenate([np.arange(len(lateral)), np.flatnonzero(lateral)])
         self._embodied = np.arange(len(self._who)) < len(lateral)
-        self._driven = ~(self._embodied & lateral[self._who])
-        self._direction = np.where(self._embodied, self._walkers.bodies.direction[self._who], "vertical")
-        self._arrival = self._walkers.arrival[self._who]
-        self._speed, self._offset = self._walkers.speed[self._who], self._walkers.offset[self._who]
-        self._departure = self._arrival + crowd.bridge.length / self._speed
-        self._bodies = _alone(self._walkers.bodies)[:, self._who]
+        self._driven = (self._who >= self._n_fixed) & ~(self._embodied & lateral[self._who])
+        self._direction = np.where(self._embodied, bodies.direction[self._who], "vertical")
+        self._follow(places, blocks[0] - 1.0, blocks[-1] + 1.0)
+        self._bodies = _alone(bodies)[:, self._who]
         self._bodies[2:] *= self._embodied
         self._first = np.maximum(np.searchsorted(blocks, self._arrival, side="right") - 1, 0)
         self._last = np.searchsorted(blocks, self._departure) - 1
         self._furnish(_most_at_once(self._first, self._last, len(blocks) - 1))
+
+    def _follow(self, places: Array, before: float, after: float) -> None:
+        """Paths: from where, when, how fast and until when; of absorbers from before to after all times."""
+        walkers, still = self._walkers, np.zeros(self._n_fixed)
+        left = walkers.arrival + self._crowd.bridge.length / walkers.speed
+        everybody = (np.append(places[:, 0], 0 * left), np.append(still + before, walkers.arrival),
+                     np.append(still, walkers.speed), np.append(places[:, 1], walkers.offset),
+                     np.append(still + after, left))
+        self._start, self._arrival, self._speed, self._offset, self._departure = (one[self._who] for one in everybody)
 
     def _furnish(self, seats: int) -> None:
         """Make empty seats."""
@@ -85,13 +95,14 @@ class Deck:
             self._seat_forces(new[self._driven[new]])
 
     def _seat_paths(self, new: Indices, seats: Indices) -> None:
-        contacts, x = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
+        contacts, along = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
         contacts.paths[:, seats] = self._arrival[new], self._departure[new], self._speed[new]
         for direction in DIRECTIONS:
             moves = self._direction[new] == direction
             if not np.any(moves):
                 continue
             y, speed = self._offset[new][moves, None], self._speed[new][moves, None]
+            x = self._start[new][moves, None] + along * (speed > 0)
             for j, mode in enumerate(self._crowd.bridge.modes):
                 for order in range(contacts.shapes.shape[1]):
                     shapes = mode.shape.derivative(x, y, direction, order)
@@ -104,7 +115,7 @@ class Deck:
         self.fine[:, places] = self.coarse[:, places] = 0.0
 
     def _seat_forces(self, new: Indices) -> None:
-        for row, force in self._walkers.part(self._who[new]).lines():
+        for row, force in self._walkers.part(self._who[new] - self._n_fixed).lines():
             tables, seats = force.tables(self._finer), self._seat[new[row]]
             missing = tables.shape[1] - self.contacts.combs.shape[1]
             if missing > 0:
