@@ -51,9 +51,9 @@ from hsictrl.walking import ForceLines, HarmonicForce, MainHarmonics, WalkingFor
 __version__ = "0.1.0"
 
 __all__ = [
-    "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape", "Ledger",
-    "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
+    "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties",
+    "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape",
+    "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
     "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",
     "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce",
     "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective",

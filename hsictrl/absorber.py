@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, final
+from dataclasses import dataclass, field, replace
+from typing import Any, final
 
 import numpy as np
 from scipy.optimize import minimize
@@ -15,7 +15,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
 from hsictrl.pedestrian import Body, Crowd
 from hsictrl.pedestrian.body import RULES
-from hsictrl.resonance import effective
+from hsictrl.resonance.effective import effective
 
 FINE = 1e-7      # to which the logarithms of frequency and damping, and of the peak, are found
 REACH = 0.05     # first steps of the search in them
@@ -50,19 +50,19 @@ class Absorber(Body):
     >>> bridge = reference_bridge(frequency=2.0, damping=0.005)
     >>> print(Absorber(mass=500.0, frequency=1.96, damping=0.09))
     500 kg at 1.960 Hz, 9.0 %, vertical
-    >>> print(effective(couple(bridge, Absorber(mass=500.0, frequency=1.96, damping=0.09), [25.0])).damping.round(3))
+    >>> round(effective(couple(bridge, Absorber(mass=500.0, frequency=1.96, damping=0.09), [25.0])).damping, 3)
     0.049
     """
 
-    sprung_ratio: ClassVar[float] = 1.0
     mass: float
     frequency: float
     damping: float
     direction: str = "vertical"
+    sprung_ratio: float = field(default=1.0, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        own = {name: check.number(name, getattr(self, name), **RULES[name]) for name in ("mass", "frequency", "damping")}
-        check.store(self, **own)
+        check.store(self, **{name: check.number(name, getattr(self, name), **RULES[name])
+                             for name in ("mass", "frequency", "damping")})
         check.choice("direction", self.direction, check.DIRECTIONS)
 
     def __str__(self) -> str:
@@ -97,8 +97,8 @@ class Absorber(Body):
 
         Notes
         -----
-        J.P. Den Hartog, Mechanical Vibrations, 4th ed., 1956, section 3.3. He divides by 2 m ω with the frequency of the
-        mode, which gives 3μ/(8(1 + μ)³).
+        J.P. Den Hartog, Mechanical Vibrations, 4th ed., 1956, section 3.3. He divides c by 2 m ω with the frequency of
+        the mode, which gives 3μ/(8(1 + μ)³).
 
         Examples
         --------
@@ -107,7 +107,7 @@ class Absorber(Body):
         500 kg at 1.961 Hz, 8.6 %, vertical
         """
         mu = _checked_ratio(mass_ratio)
-        return _Spot.of(bridge, at, mode, direction).absorber(mu, 1 / (1 + mu), 3 * mu / (8 * (1 + mu)))
+        return _Spot.of(bridge, at, mode, direction).sized(mu, 1 / (1 + mu), 3 * mu / (8 * (1 + mu)))
 
     @classmethod
     def warburton(
@@ -139,7 +139,7 @@ class Absorber(Body):
         500 kg at 1.980 Hz, 8.6 %, vertical
         """
         mu = _checked_ratio(mass_ratio)
-        return _Spot.of(bridge, at, mode, direction).absorber(mu, (1 + mu)**-0.5, 3 * mu / (8 * (1 + mu / 2)))
+        return _Spot.of(bridge, at, mode, direction).sized(mu, (1 + mu)**-0.5, 3 * mu / (8 * (1 + mu / 2)))
 
     @classmethod
     def tuned(
@@ -172,9 +172,9 @@ class Absorber(Body):
         >>> from hsictrl.pedestrian import Pedestrian
         >>> bridge, x = reference_bridge(frequency=2.0), (np.arange(75) + 0.5) * 50 / 75
         >>> print(Absorber.tuned(bridge, mass_ratio=0.02))
-        500 kg at 1.980 Hz, 8.8 %, vertical
+        500 kg at 1.981 Hz, 8.7 %, vertical
         >>> print(Absorber.tuned(bridge, Pedestrian(), x, mass_ratio=0.02))
-        500 kg at 1.822 Hz, 10.0 %, vertical
+        500 kg at 1.849 Hz, 8.1 %, vertical
         """
         spot = _Spot.of(bridge, at, mode, direction)
         start = cls.warburton(bridge, mass_ratio=mass_ratio, at=at, mode=mode, direction=direction)
@@ -215,7 +215,7 @@ class _Spot:
         return cls(place=(places[0, 0], places[0, 1]), frequency=one.frequency, modal_mass=share**-2,
                    direction=direction)
 
-    def absorber(self, mass_ratio: float, tuning: float, damping_squared: float) -> Absorber:
+    def sized(self, mass_ratio: float, tuning: float, damping_squared: float) -> Absorber:
         return Absorber(mass=mass_ratio * self.modal_mass, frequency=tuning * self.frequency,
                         damping=damping_squared**0.5, direction=self.direction)
 

@@ -432,7 +432,7 @@ class Footbridge:
           mode 0: 2.000 Hz, 0.50 %, 25000 kg
           fixed at (25, 0) m: 500 kg at 1.960 Hz, 9.0 %, vertical
         """
-        places = check.points("at", at, least=1).tolist()
+        places = self.on_deck("at", check.points("at", at, least=1)).tolist()
         bodies = [absorbers] * len(places) if isinstance(absorbers, Body) else check.several("absorbers", absorbers)
         if len(bodies) != len(places):
             raise ValueError(f"absorbers and places must be as many, got {len(bodies)} and {len(places)}; give one "

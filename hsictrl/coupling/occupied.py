@@ -67,6 +67,7 @@ def couple(
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.pedestrian import Pedestrian
     >>> occupied = couple(reference_bridge(frequency=2.0), Pedestrian(), np.linspace(0, 50, 15))
     >>> occupied.nstates, occupied.input_labels, occupied.output_labels
     (32, ['F[0]'], ['a[0]'])
@@ -110,6 +111,7 @@ class OccupiedBridge(ct.StateSpace):
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.pedestrian import Pedestrian
     >>> print(couple(reference_bridge(frequency=2.0), Pedestrian(), [20.0, 30.0]))
     <OccupiedBridge> occupied: 2 bodies, 140 kg, 3.25–3.25 Hz, 30–30 %
     on footbridge 50 m × 3 m, 50000 kg
@@ -266,6 +268,7 @@ class OccupiedBridge(ct.StateSpace):
         Examples
         --------
         >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.pedestrian import Pedestrian
         >>> blocks = couple(reference_bridge(frequency=2.0), Pedestrian(), [25.0]).interconnected()
         >>> [block.name for block in blocks.syslist]
         ['mode0', 'walker0']

@@ -228,8 +228,9 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     Parameters
     ----------
     model : {"SF", "MF", "MFAM", "PMC", "MC"}
-        "SF" and "MF" meet the empty bridge's first mode (with absorbers, its highest peak), "MFAM" that of the bridge with the mass of this
-        traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd.
+        "SF" and "MF" meet the empty bridge's first mode, "MFAM" that of the bridge with the mass of this
+        traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd. A bridge
+        with absorbers has its effective frequency in all of them.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
