@@ -52,13 +52,13 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties",
-    "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape",
-    "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
-    "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",
-    "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce",
-    "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective",
-    "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value",
-    "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge",
-    "resonant_step_frequency", "simulate", "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune",
-    "weidmann_speed",
+    "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce",
+    "LateralTorsionShape", "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd",
+    "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction",
+    "SampledShape", "Shape", "Simulation", "SineShape", "SpectralEstimate", "StopRule", "Sweep", "Traffic",
+    "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple",
+    "design_acceleration", "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity",
+    "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo",
+    "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
+    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]

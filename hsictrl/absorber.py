@@ -51,7 +51,7 @@ class Absorber(Body):
     >>> print(Absorber(mass=500.0, frequency=1.96, damping=0.09))
     500 kg at 1.960 Hz, 9.0 %, vertical
     >>> round(effective(couple(bridge, Absorber(mass=500.0, frequency=1.96, damping=0.09), [25.0])).damping, 3)
-    0.049
+    0.05
     """
 
     mass: float
