@@ -4,6 +4,7 @@ A bridge is a set of modes; a walker is a sprung body that pushes back on the de
 loop around the bridge. Van Nimmen, Lombaert, De Roeck & Van den Broeck (2017) is implemented throughout.
 """
 
+from hsictrl.absorber import Absorber
 from hsictrl.assessment import Assessment, assess, guide_value, study_effective
 from hsictrl.bridge import (
     BeamShape,
@@ -30,7 +31,7 @@ from hsictrl.crowd import (
     weidmann_speed,
 )
 from hsictrl.identify import FreeDecay, free_decay
-from hsictrl.pedestrian import Crowd, Pedestrian, Population
+from hsictrl.pedestrian import Body, Crowd, Pedestrian, Population
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
 from hsictrl.resonance import (
     EffectiveProperties,
@@ -59,14 +60,14 @@ from hsictrl.walking import ForceLines, HarmonicForce, MainHarmonics, WalkingFor
 __version__ = "0.1.0"
 
 __all__ = [
-    "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape", "Ledger",
-    "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
-    "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",
-    "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Trajectory", "Walker", "Walkers", "WalkingForce", "YoungForce",
-    "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective",
-    "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value",
-    "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "preferred_step_frequency",
-    "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate", "study_effective", "sweep",
-    "trial_rng", "tune", "weidmann_speed",
+    "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties",
+    "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape",
+    "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge",
+    "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape",
+    "Simulation", "SineShape", "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Trajectory", "Walker", "Walkers",
+    "WalkingForce", "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration",
+    "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity", "en1990_limit",
+    "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict",
+    "preferred_step_frequency", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
+    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]

@@ -89,7 +89,7 @@ def test_example_at_the_top_of_the_module_runs(written):
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    ("seeed = 1", r"line 1, seeed: key must be one of 'bridge', 'traffic', 'force', 'seed', got 'seeed'; correct"),
+    ("seeed = 1", r"line 1, seeed: key must be one of 'bridge', 'traffic', 'force', 'absorbers', 'seed', got 'seeed'"),
     ("seed = 1\n\n[brigde]\nkind = 1", r"line 3, brigde: key must be one of .*, got 'brigde'"),
     ("bridge = 3", r"line 1, bridge: bridge must be a table, got 3; write it like \[name\]"),
     ("[[bridge]]\nkind = 'beam'", r"line 1, bridge: bridge must be a table, got \[\{"),

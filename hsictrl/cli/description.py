@@ -13,6 +13,12 @@ Unknown keys are refused. An example::
     frequency = 3.25            # Hz
     damping = 0.005             # a fraction; or one per mode
 
+    [[absorbers]]               # tuned mass dampers, as many as there are
+    mass = 500.0                # kg
+    frequency = 3.19            # Hz
+    damping = 0.086             # a fraction
+    at = 25.0                   # m along the deck; or [x, y]
+
     [traffic]
     density = [0.2, 0.5]        # persons/m², a row each; or persons = 15
     weight = 700.0              # N
@@ -31,6 +37,7 @@ Unknown keys are refused. An example::
 "simply_supported"   length, width, mass, frequency, damping; n_modes
 "beam"               spans, width, mass, frequency, damping; ends, n_modes
 "csv"                shapes, modes (files of `Footbridge.from_csv`, seen from here), width, mass
+``[[absorbers]]``    mass, frequency, damping, at (x or [x, y]); direction
 ``[traffic]``        ; density or persons, speed, step_frequency (a number or [mean, sd]), weight
 ``[.population]``    ; frequency, damping, mass (a number or [mean, sd]), sprung_ratio
 ``[force]`` model    keys
@@ -49,6 +56,7 @@ from pathlib import Path
 from typing import Any, final
 
 from hsictrl import _checks as check
+from hsictrl.absorber import Absorber
 from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.cli import schema
 from hsictrl.cli.schema import Keys, Table
@@ -148,8 +156,11 @@ def read_description(path: Path) -> Description:
 def described(top: Table, further: Keys | None = None) -> Description:
     """What a document describes, beside further keys, which must be there for somebody else to read."""
     further = further or {}
-    values = top.read({**dict.fromkeys(PARTS, schema.TABLE), "seed": schema.WHOLE, **further}, needs=further)
+    known = {**dict.fromkeys(PARTS, schema.TABLE), "absorbers": schema.TABLES, "seed": schema.WHOLE}
+    values = top.read({**known, **further}, needs=further)
     parts = {name: make(top.table(key)) for key, (name, make) in PARTS.items() if key in values}
+    for table in top.tables("absorbers") if "absorbers" in values else ():
+        parts["bridge"] = _fixed(parts.get("bridge", reference_bridge()), table)
     return top.make(Description, parts | {key: value for key, value in values.items() if key == "seed"})
 
 
@@ -173,6 +184,7 @@ _BRIDGES = {
     "csv": _Kind(Footbridge.from_csv, {"shapes": schema.FILE, "modes": schema.FILE, "width": schema.NUMBER,
                                        "mass": schema.NUMBER}),
 }
+_ABSORBER: Keys = {**dict.fromkeys(("mass", "frequency", "damping"), schema.NUMBER), "at": schema.PLACE}
 _FORCES = {
     "zivanovic": _Kind(ZivanovicForce, may={"spacing": schema.NUMBER, "scaling": schema.TEXT}),
     "young": _Kind(YoungForce, may={"values": schema.TEXT}),
@@ -186,6 +198,14 @@ _POPULATION: Keys = {**dict.fromkeys(("frequency", "damping", "mass"), schema.NO
 def _bridge(table: Table) -> Footbridge:
     bridge: Footbridge = _of_kind(table, "kind", _BRIDGES)
     return bridge
+
+
+def _fixed(bridge: Footbridge, table: Table) -> Footbridge:
+    """The bridge with one more absorber."""
+    values = table.read({**_ABSORBER, "direction": schema.TEXT}, needs=_ABSORBER)
+    place = values.pop("at")
+    absorber = table.make(Absorber, values)
+    return table.make(partial(bridge.with_absorbers, absorber), {"at": [place]})
 
 
 def _force(table: Table) -> WalkingForce:

@@ -103,4 +103,7 @@ def bridge_document(bridge: Footbridge) -> dict[str, Any]:
     """A bridge for JSON, units in the keys."""
     modes = [{"frequency_hz": mode.frequency, "damping": mode.damping, "modal_mass_kg": mode.modal_mass}
              for mode in bridge.modes]
-    return {"length_m": bridge.length, "width_m": bridge.width, "mass_kg": bridge.mass, "modes": modes}
+    document = {"length_m": bridge.length, "width_m": bridge.width, "mass_kg": bridge.mass, "modes": modes}
+    absorbers = [{"mass_kg": body.mass, "frequency_hz": body.frequency, "damping": body.damping,
+                  "direction": body.direction, "x_m": x, "y_m": y} for body, (x, y) in bridge.absorbers]
+    return document | ({"absorbers": absorbers} if absorbers else {})

@@ -14,7 +14,7 @@ from scipy.linalg import block_diag
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._names import labels
-from hsictrl.pedestrian.body import RULES, Pedestrian, SprungBody, block_matrices, checked_ports
+from hsictrl.pedestrian.body import RULES, Body, Pedestrian, SprungBody, block_matrices, checked_ports
 
 
 @final
@@ -48,12 +48,12 @@ class Crowd(SprungBody):
         check.store(self, **dict(zip(self.__slots__, _same_length(values), strict=True)))
 
     @classmethod
-    def of(cls, bodies: Sequence[Pedestrian]) -> Crowd:
+    def of(cls, bodies: Sequence[Body]) -> Crowd:
         """Gather single bodies.
 
         Parameters
         ----------
-        bodies : sequence of Pedestrian
+        bodies : sequence of Pedestrian or Absorber
             The bodies, in order.
 
         Returns
@@ -65,8 +65,9 @@ class Crowd(SprungBody):
         >>> len(Crowd.of([Pedestrian(), Pedestrian(mass=80.0)]))
         2
         """
-        for body in check.instance("bodies", bodies, Sequence, "give a sequence of Pedestrian"):
-            check.instance("bodies", body, Pedestrian, "give a sequence of Pedestrian")
+        remedy = "give a sequence of Pedestrian or Absorber"
+        for body in check.instance("bodies", bodies, Sequence, remedy):
+            check.instance("bodies", body, Body, remedy)
         values: dict[str, Any] = {name: [getattr(body, name) for body in bodies] for name in cls.__slots__}
         return cls(**values)
 
@@ -81,6 +82,12 @@ class Crowd(SprungBody):
 
     def __iter__(self) -> Iterator[Pedestrian]:
         return (self[i] for i in range(len(self)))
+
+    def __add__(self, others: Crowd) -> Crowd:
+        """These bodies and then the others."""
+        if not isinstance(others, Crowd):
+            return NotImplemented
+        return Crowd(**{name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in self.__slots__})
 
     def __str__(self) -> str:
         if not len(self):

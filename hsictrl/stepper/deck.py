@@ -26,6 +26,7 @@ class Deck:
     """Arrays of the kernel with as many seats as are needed at once, taken and left between blocks of time.
 
     A walker whose body moves laterally takes two seats: one for the body, one for the force, which is vertical.
+    Absorbers of the bridge have come before anybody, and stay.
 
     Parameters
     ----------
@@ -47,20 +48,29 @@ class Deck:
         self._crowd, self._step, self._blocks = crowd, step, blocks
         self._finer = 1 << min(max(0, int(np.log2(TABLES_SUFFICE / step))), FINEST)
         self._walkers = walkers.part(walkers.carried(crowd.bridge))
-        lateral = self._walkers.bodies.direction != "vertical"
+        fixed, places = crowd.bridge.fixed
+        bodies, self._n_fixed = fixed + self._walkers.bodies, len(fixed)
+        lateral = (bodies.direction != "vertical") & (np.arange(len(bodies)) >= self._n_fixed)
         self._who = np.concatenate([np.arange(len(lateral)), np.flatnonzero(lateral)])
         self._embodied = np.arange(len(self._who)) < len(lateral)
-        self._driven = ~(self._embodied & lateral[self._who])
-        self._direction = np.where(self._embodied, self._walkers.bodies.direction[self._who], "vertical")
-        self._arrival = self._walkers.arrival[self._who]
-        self._speed, self._offset = self._walkers.speed[self._who], self._walkers.offset[self._who]
-        self._departure = self._walkers.departure(crowd.bridge.length)[self._who]
-        self._follows = self._walkers.followed[self._who]
-        self._bodies = _alone(self._walkers.bodies)[:, self._who]
+        self._driven = (self._who >= self._n_fixed) & ~(self._embodied & lateral[self._who])
+        self._direction = np.where(self._embodied, bodies.direction[self._who], "vertical")
+        self._enlist(places, blocks[0] - 1.0, blocks[-1] + 1.0)
+        self._bodies = _alone(bodies)[:, self._who]
         self._bodies[2:] *= self._embodied
         self._first = np.maximum(np.searchsorted(blocks, self._arrival, side="right") - 1, 0)
         self._last = np.searchsorted(blocks, self._departure) - 1
         self._furnish(_most_at_once(self._first, self._last, len(blocks) - 1))
+
+    def _enlist(self, places: Array, before: float, after: float) -> None:
+        """From where, when, how fast and until when all go; absorbers stay from before to after all times."""
+        walkers, still = self._walkers, np.zeros(self._n_fixed)
+        left = walkers.departure(self._crowd.bridge.length)
+        self._follows = np.append(still > 0, walkers.followed)[self._who]
+        everybody = (np.append(places[:, 0], 0 * left), np.append(still + before, walkers.arrival),
+                     np.append(still, walkers.speed), np.append(places[:, 1], walkers.offset),
+                     np.append(still + after, left))
+        self._start, self._arrival, self._speed, self._offset, self._departure = (one[self._who] for one in everybody)
 
     def _furnish(self, seats: int) -> None:
         """Make empty seats."""
@@ -92,9 +102,9 @@ class Deck:
         self._lead(np.flatnonzero(self._follows & (self._seat >= 0) & (self._last >= block)), block)
 
     def _seat_paths(self, new: Indices) -> None:
-        contacts, x = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
+        contacts, along = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
         contacts.paths[:, self._seat[new]] = self._arrival[new], self._departure[new], self._speed[new]
-        self._tabulate(new, np.broadcast_to(x, (len(new), POINTS)), self._offset[new, None])
+        self._tabulate(new, self._start[new, None] + along * (self._speed[new, None] > 0), self._offset[new, None])
 
     def _lead(self, who: Indices, block: int) -> None:
         """Tables of those who follow a trajectory, over a block and a bit: its ends are no events."""
@@ -106,7 +116,7 @@ class Deck:
         self.contacts.paths[:, self._seat[who]] = start, stop, length / (stop - start)
         times = start[:, None] + (stop - start)[:, None] * np.linspace(0, 1, POINTS)
         times[:, -1] = stop
-        self._tabulate(who, *self._walkers.along(times, self._who[who]))
+        self._tabulate(who, *self._walkers.along(times, self._who[who] - self._n_fixed))
 
     def _tabulate(self, who: Indices, x: Array, y: Array) -> None:
         """Shapes under some of those with seats, at places of their own."""
@@ -128,7 +138,7 @@ class Deck:
         self.fine[:, places] = self.coarse[:, places] = 0.0
 
     def _seat_forces(self, new: Indices) -> None:
-        for row, force in self._walkers.part(self._who[new]).lines():
+        for row, force in self._walkers.part(self._who[new] - self._n_fixed).lines():
             tables, seats = force.tables(self._finer), self._seat[new[row]]
             missing = tables.shape[1] - self.contacts.combs.shape[1]
             if missing > 0:
