@@ -27,8 +27,7 @@ def largest_difference(omega: Array, damping: Array, full: Standing, small: Stan
     X̃ − X = X̃ ΔA X and X = X̃ (1 + ΔA X̃)⁻¹, hence ‖X̃ − X‖ ≤ ‖X̃‖² ‖ΔA‖ / (1 − ‖X̃‖ ‖ΔA‖) at each frequency.
     """
     full, small = _taking_part(*full), _taking_part(*small)
-    frequency = np.concatenate([full[0].omega, small[0].omega])
-    scale = np.sqrt(frequency.min() * frequency.max())
+    scale = float(np.sqrt(omega.min() * omega.max()))      # arcs are shortest, for their frequency, where the bridge is
     terms = _enough(max(np.abs(_circle(people, scale)[0]).max() for people, _ in (full, small)))
     (exact, exact_tail), (series, tail) = (_series(*standing, scale, terms) for standing in (full, small))
     gain, top = _gain(_stiffness(series, omega / scale, damping), 4 * tail)
@@ -83,7 +82,7 @@ def _series(people: Crowd, rows: Array, scale: float, terms: int) -> tuple[Array
 
 
 def _circle(people: Crowd, scale: float) -> tuple[Complex, Complex]:
-    """q and head from a body's pole a: real parts of the coefficients of head (1 + z)/(1 − qz) are its sprung part's."""
+    """q and head: the real parts of the coefficients of head (1 + z)/(1 − qz) are those of a sprung body's g."""
     pole = people.omega * (-people.damping + 1j * np.sqrt(1 - people.damping**2))
     return (scale + pole) / (scale - pole), 1j * pole**2 / pole.imag / (scale - pole)
 

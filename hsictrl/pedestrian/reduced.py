@@ -55,12 +55,13 @@ class ReducedCrowd:
     --------
     >>> from hsictrl.bridge import reference_bridge
     >>> from hsictrl.coupling import couple
-    >>> bridge, everyone = reference_bridge(frequency=2.0), Crowd(mass=[70.0] * 15, frequency=3.25, damping=0.3)
-    >>> small = everyone.reduced(order=2, bridge=bridge, positions=np.linspace(1, 49, 15))
+    >>> bridge, places = reference_bridge(frequency=2.0), np.linspace(0, 50, 16)
+    >>> everyone = Crowd(mass=[70.0] * 16, frequency=[3.0, 3.5] * 8, damping=0.3)
+    >>> small = everyone.reduced(order=4, bridge=bridge, positions=places)
     >>> couple(bridge, *small).nstates
-    4
+    6
     >>> print(small)
-    order 2 for 15 bodies: 1 body, 525 kg, 3.25–3.25 Hz, 30–30 %
+    order 4 for 16 bodies: 2 bodies, 531 kg, 3.00–3.50 Hz, 30–30 %
     """
 
     people: Crowd
