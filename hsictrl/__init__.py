@@ -31,7 +31,7 @@ from hsictrl.crowd import (
     weidmann_speed,
 )
 from hsictrl.identify import FreeDecay, free_decay
-from hsictrl.pedestrian import Body, Crowd, Pedestrian, Population
+from hsictrl.pedestrian import Body, Crowd, Pedestrian, Population, ReducedCrowd
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
 from hsictrl.resonance import (
     EffectiveProperties,
@@ -63,11 +63,11 @@ __all__ = [
     "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties",
     "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape",
     "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge",
-    "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape",
-    "Simulation", "SineShape", "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Trajectory", "Walker", "Walkers",
-    "WalkingForce", "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration",
-    "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity", "en1990_limit",
-    "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict",
-    "preferred_step_frequency", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
-    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
+    "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "ReducedCrowd", "SampledShape",
+    "Shape", "Simulation", "SineShape", "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Trajectory", "Walker",
+    "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple",
+    "design_acceleration", "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity",
+    "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd",
+    "predict", "preferred_step_frequency", "reference_bridge", "resonant_step_frequency", "simulate",
+    "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]
