@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 from contextlib import chdir, redirect_stdout
@@ -16,7 +15,8 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
-BLOCK = re.compile(r"^(<!-- not run: .+ -->\n+)?```python\n(.*?)^```(?:\s+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^(<!-- not run: [^\n]+ -->\n+)?```python\n(.*?)^```(?:\s+```text\n(.*?)^```)?",
+                   re.DOTALL | re.MULTILINE)
 # what a page takes for granted, by its name
 GIVEN = {
     "fe.md": "from shutil import copy\nfor name in 'nodes', 'modes':\n"

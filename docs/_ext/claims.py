@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import groupby
 from typing import Any
 
 from docutils import nodes
-from hsictrl.paper import compute
 from sphinx.util.docutils import SphinxDirective
+
+from hsictrl.paper import compute
 
 
 class Claims(SphinxDirective):
     """All claims, by the part of the paper that they are about."""
 
     def run(self) -> list[nodes.Node]:
-        return [node for where, group in groupby(compute("claims").rows, key=lambda row: row["where"])
-                for node in (nodes.rubric("", f"Section {where}"), *(paragraph(row) for row in group))]
+        rows = compute("claims").rows
+        return [nodes.paragraph("", counted(rows)), *(
+            node for where, group in groupby(rows, key=lambda row: row["where"])
+            for node in (nodes.rubric("", f"Section {where}"), *map(paragraph, group)))]
+
+
+def counted(rows: list[dict[str, str]]) -> str:
+    count = Counter(row["verdict"] for row in rows)
+    return f"Of {len(rows)} claims {count['holds']} hold, {count['fails']} fail, {count['undecided']} are undecided."
 
 
 def paragraph(row: dict[str, str]) -> nodes.paragraph:
