@@ -42,7 +42,7 @@ class Recorded:
 
     @property
     def speed(self) -> float:
-        """Mean speed on the deck [m/s]."""
+        """Median speed, averaged over all stays [m/s]."""
         lasting = [stay.departure - stay.arrival for stay in self.stays]
         return float(np.average([stay.speed for stay in self.stays], weights=lasting))
 
