@@ -1,7 +1,7 @@
 """The two recordings of the page trajectories.md: nobody was filmed, and no simulator ran.
 
-`python docs/trajectories.py` writes examples/simulated.sqlite, in the tables of JuPedSim, and examples/filmed.txt, in the
-columns of PeTrack and PedPy, from the same people who cross 50 m at speeds of their own.
+`python docs/trajectories.py` writes examples/simulated.sqlite, in the tables of JuPedSim, and examples/filmed.txt, in
+the columns of PeTrack and PedPy: the same people, who cross 50 m at speeds of their own.
 """
 
 from __future__ import annotations
