@@ -55,7 +55,10 @@ def test_a_file_appears_when_all_is_written(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.undo()
     assert [one.name for one in tmp_path.iterdir()] == ["traffic.npz"]
     assert len(hsi.Traffic.load(path).walkers) == 1
-    two.save(path)
+    old = path.read_bytes()
+    with path.open("rb") as reader:     # whoever reads meanwhile reads the old file to its end
+        two.save(path)
+        assert reader.read() == old
     assert len(hsi.Traffic.load(path).walkers) == 2
 
 
