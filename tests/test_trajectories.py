@@ -97,6 +97,20 @@ def test_stays_end_where_the_deck_does(places, expected) -> None:
             assert stay.x[0] == pytest.approx(0.0, abs=1e-12)
 
 
+def test_stays_are_found_however_often_rounding_meets_an_edge() -> None:
+    """Pacing along the edge and across it by what rounding leaves; every instant on the deck belongs to a stay."""
+    rng = np.random.default_rng(1)
+    times, x = np.arange(0.0, 100.0, 0.5), np.linspace(0.0, 50.0, 200)
+    for size in (1e-16, 1e-12, 1e-9, 1e-6, 1e-2):
+        whole = hsi.Trajectory(times, x, 1.5 + size * rng.choice([-1, 0, 1], size=200))
+        stays, asked = whole.stays_on(BRIDGE), np.linspace(0.0, 99.5, 4001)
+        held = np.any([(asked >= one.arrival - 1e-5) & (asked <= one.departure + 1e-5) for one in stays], axis=0)
+        y = whole(asked)[:, 1]
+        assert np.all(held[y < 1.5 - 2e-9])
+        assert not np.any(held[y > 1.5 + size / 2 + 2e-9])
+        assert all(np.all(BRIDGE.carries(one(one.times))) for one in stays)
+
+
 def test_speed_is_how_fast_a_person_walks() -> None:
     """At 1.5 m/s, with a rest of a third of the time and a sway of 5 cm that a second step undoes."""
     times = np.arange(0.0, 60.0, 0.1)

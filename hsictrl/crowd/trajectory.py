@@ -7,6 +7,7 @@ from typing import Any, final
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -15,6 +16,7 @@ from hsictrl.bridge import Footbridge
 FASTEST = 10.0     # m/s
 STRIDE = 1.0       # s; over about a stride, the sway of a body adds nothing to its way
 SHORTEST = 1e-6    # s; what a stay must last to be one
+ON_EDGE = 1e-9     # m; as near an edge as makes no difference, and farther than rounding reaches
 AWAY = -1.0        # m; a place x off every deck, which begins at 0
 
 
@@ -139,14 +141,19 @@ class Trajectory:
         (array([20., 60.]), array([ 0., 50.]))
         """
         edges = [(0, 0.0), (0, bridge.length), (1, -bridge.width / 2), (1, bridge.width / 2)]
-        crossings = [PchipInterpolator(self.times, (self.x, self.y)[axis]).solve(edge, extrapolate=False)
-                     for axis, edge in edges]
-        ends = np.unique(np.concatenate([self.times[[0, -1]], *crossings]))
-        ends = ends[np.isfinite(ends)]     # whoever walks along an edge has no time of crossing it
+        ends = np.unique(np.concatenate([self.times[[0, -1]], *(self._crossings(*edge) for edge in edges)]))
         on = np.concatenate([[False], bridge.carries(self._places((ends[:-1] + ends[1:]) / 2)), [False]])
         changes = np.flatnonzero(on[1:] != on[:-1])
         return [self._between(ends[first], ends[last], bridge) for first, last in changes.reshape(-1, 2)
                 if ends[last] - ends[first] > SHORTEST]
+
+    def _crossings(self, axis: int, edge: float) -> Array:
+        """When an edge of the deck is crossed or met: at most once between two known places, whose order is kept."""
+        beyond = (self.x, self.y)[axis] - edge
+        side = np.where(np.abs(beyond) > ON_EDGE, np.sign(beyond), 0)
+        found = [brentq(lambda time: self._curve(time)[axis] - edge, *self.times[i:i + 2])
+                 for i in np.flatnonzero(side[1:] * side[:-1] < 0)]
+        return np.concatenate([self.times[side == 0], found])
 
     def _places(self, times: Array) -> Array:
         """Places at times of the stay, which rounding takes nowhere but between the known ones."""
