@@ -20,7 +20,16 @@ from hsictrl.bridge import (
 )
 from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, iso10137_limit
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
-from hsictrl.crowd import CrowdFlow, Traffic, Walker, Walkers, resonant_step_frequency, weidmann_speed
+from hsictrl.crowd import (
+    CrowdFlow,
+    Traffic,
+    Trajectory,
+    Walker,
+    Walkers,
+    preferred_step_frequency,
+    resonant_step_frequency,
+    weidmann_speed,
+)
 from hsictrl.identify import FreeDecay, free_decay
 from hsictrl.pedestrian import Body, Crowd, Pedestrian, Population
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
@@ -52,13 +61,13 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Absorber", "AllRules", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow", "EffectiveProperties",
-    "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce",
-    "LateralTorsionShape", "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd",
-    "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction",
-    "SampledShape", "Shape", "Simulation", "SineShape", "SpectralEstimate", "StopRule", "Sweep", "Traffic",
-    "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple",
-    "design_acceleration", "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity",
-    "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo",
-    "moving_crowd", "predict", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
+    "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape",
+    "Ledger", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge",
+    "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape",
+    "Simulation", "SineShape", "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Trajectory", "Walker", "Walkers",
+    "WalkingForce", "YoungForce", "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration",
+    "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity", "en1990_limit",
+    "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict",
+    "preferred_step_frequency", "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate",
     "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]

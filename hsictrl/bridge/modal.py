@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
+from hsictrl.bridge.beams import beam_modes
 from hsictrl.bridge.mode import Mode
 from hsictrl.bridge.plant import block
-from hsictrl.bridge.shapes import Shape, SineShape, beam_modes
+from hsictrl.bridge.shapes import Shape, SineShape
 from hsictrl.bridge.tables import read_modes
 from hsictrl.pedestrian import Body, Crowd
 

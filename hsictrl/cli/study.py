@@ -167,6 +167,11 @@ def _check_case(top: Table, case: Description) -> None:
     if case.bridge.n_modes != 1:
         top.table("bridge").refuse("n_modes", f"the bridge of a sweep must have one mode, got {case.bridge.n_modes}; "
                                               "leave n_modes out, or use 'hsictrl assess'")
+    densities = [flow.density_on(case.bridge) for flow in case.flows]
+    if len(set(densities)) < len(densities):
+        told = ", ".join(f"{one:g}" for one in densities)
+        top.table("traffic").refuse("persons", f"the flows of a sweep must differ in density, got {told} persons/m²; "
+                                               "leave one out")
     step = case.flows[0].step_frequency
     if step is not None:
         top.table("traffic").refuse("step_frequency", "the steps of a sweep must be tuned to each bridge, got "

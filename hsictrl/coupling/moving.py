@@ -34,6 +34,11 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic, *, convective: bool = Fal
     -------
     MovingCrowd
 
+    Raises
+    ------
+    ValueError
+        If a trajectory leaves the deck, or convective terms are asked for where somebody follows a trajectory.
+
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
@@ -47,6 +52,10 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic, *, convective: bool = Fal
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
     check.instance("convective", convective, bool, "give True or False")
+    if convective and traffic.walkers.trajectories:
+        raise ValueError("convective terms need walkers who go straight on, got some who follow a trajectory; leave "
+                         "these terms out")
+    traffic.walkers.carried(bridge)     # refuses trajectories that leave the deck
     return MovingCrowd(bridge=bridge, traffic=traffic, convective=convective)
 
 

@@ -12,7 +12,8 @@ from hsictrl._checks import Array
 from hsictrl._draws import truncated_normal
 from hsictrl.bridge import Footbridge
 from hsictrl.crowd.traffic import Traffic
-from hsictrl.crowd.walkers import BY_HAND, Walkers
+from hsictrl.crowd.walker import BY_HAND
+from hsictrl.crowd.walkers import Walkers
 from hsictrl.pedestrian import Crowd, Population
 from hsictrl.walking import WalkingForce, ZivanovicForce
 

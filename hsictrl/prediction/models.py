@@ -329,7 +329,7 @@ def _full_deck(traffic: Traffic, bridge: Footbridge) -> float:
 
 
 def _crossing(traffic: Traffic, bridge: Footbridge) -> float:
-    return bridge.length / float(traffic.walkers.speed.min())
+    return float(np.max(traffic.walkers.stay(bridge.length)))
 
 
 def _resonances(system: OccupiedBridge) -> Resonances:
