@@ -45,10 +45,11 @@ def draw(cases, path=FIGURE):
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.0), sharey=True, layout="constrained")
     for ax, (deck, people) in zip(axes, DECKS.items(), strict=True):
         systems = [hsi.couple(cases[name], *people) for name in shown]
-        frf_plot([hsi.frf(system, HERTZ) for system in systems], labels=shown, ax=ax)
+        plot = frf_plot([hsi.frf(system, HERTZ) for system in systems], labels=shown, ax=ax)
         ax.set_title(deck, loc="left", fontsize="medium")
-        ax.legend(loc="lower right", frameon=False, fontsize="small")
+        ax.get_legend().remove()
     axes[1].set_ylabel("")
+    figure.legend(handles=list(plot.lines[0, 0]), loc="outside upper center", ncols=len(shown), frameon=False)
     figure.savefig(path, dpi=120)
 
 
