@@ -157,7 +157,8 @@ def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Predictio
     """
     system = _system(model, bridge, traffic, None)
     found = _resonances(system)
-    return _predicted(system, found, _tuned(traffic, system, found), None, None)
+    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
+    return _predicted(system, found, _tuned(traffic, resonant.frequency), None, None)
 
 
 def _predicted(
@@ -222,19 +223,21 @@ def _response(
         plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration")
 
 
-def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
+def tune(model: str, bridge: Footbridge, traffic: Traffic, *, mode: int = 0) -> Traffic:
     """Tune traffic to a model's own resonance, the load case of section 2.2.
 
     Parameters
     ----------
     model : {"SF", "MF", "MFAM", "PMC", "MC"}
-        "SF" and "MF" meet the empty bridge's first mode, "MFAM" that of the bridge with the mass of this
+        "SF" and "MF" meet a mode of the empty bridge, "MFAM" that of the bridge with the mass of this
         traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd. A bridge
         with absorbers has its effective frequency in all of them.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
         Who walks over it.
+    mode : int
+        Which mode of the bridge, from 0 [-].
 
     Returns
     -------
@@ -252,12 +255,12 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     [2.0, 2.0, 1.818, 1.754, 1.754]
     """
     system = _system(model, bridge, traffic, None)
-    return _tuned(traffic, system, [effective(system)] if len(system.people) else [])
+    check_vertical(bridge, mode)
+    resonant = effective(system, mode=mode) if len(system.people) else system.bridge.mode(mode)
+    return _tuned(traffic, resonant.frequency)
 
 
-def _tuned(traffic: Traffic, system: OccupiedBridge, found: Resonances) -> Traffic:
-    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
-    frequency = resonant.frequency
+def _tuned(traffic: Traffic, frequency: float) -> Traffic:
     return traffic.tuned(resonant_step_frequency(frequency)[0])
 
 
