@@ -20,7 +20,7 @@ from hsictrl.pedestrian.body import RULES, Body, Pedestrian, SprungBody, block_m
 @final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Crowd(SprungBody):
-    """Bodies of n people as arrays.
+    """Bodies of n people as arrays. Crowds add up: ``people + others``.
 
     Parameters
     ----------
