@@ -2,6 +2,7 @@
 
 from hsictrl.bridge.beams import BeamShape
 from hsictrl.bridge.eeklo import eeklo_bridge
+from hsictrl.bridge.extent import Extent
 from hsictrl.bridge.measured import MeasuredBridge
 from hsictrl.bridge.modal import Footbridge, reference_bridge
 from hsictrl.bridge.mode import Mode
@@ -10,6 +11,6 @@ from hsictrl.bridge.shapes import Shape, SineShape
 from hsictrl.bridge.torsion import LateralTorsionShape
 
 __all__ = [
-    "BeamShape", "Footbridge", "LateralTorsionShape", "MeasuredBridge", "Mode", "SampledShape", "Shape", "SineShape",
-    "eeklo_bridge", "reference_bridge",
+    "BeamShape", "Extent", "Footbridge", "LateralTorsionShape", "MeasuredBridge", "Mode", "SampledShape", "Shape",
+    "SineShape", "eeklo_bridge", "reference_bridge",
 ]

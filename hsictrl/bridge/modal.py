@@ -261,6 +261,29 @@ class Footbridge:
                              "count modes from 0, or describe the bridge with more of them")
         return self.modes[index]
 
+    def led_by(self, mode: int) -> Footbridge:
+        """Put a mode first: the one to whose resonance traffic is tuned, and at whose antinode motion is read.
+
+        Parameters
+        ----------
+        mode : int
+            Index of the mode, from 0 [-].
+
+        Returns
+        -------
+        Footbridge
+            The same bridge; the other modes follow in their order.
+
+        Examples
+        --------
+        >>> bridge = Footbridge.simply_supported(length=50.0, width=3.0, mass=50e3, frequency=1.0, damping=0.005,
+        ...                                      n_modes=3)
+        >>> [mode.frequency for mode in bridge.led_by(1).modes]
+        [4.0, 1.0, 9.0]
+        """
+        first = self.mode(mode)
+        return replace(self, modes=[first, *self.modes[:mode], *self.modes[mode + 1:]])
+
     def moves_vertically(self, mode: int) -> bool:
         """Whether a mode moves vertically at its antinode, so that walking can excite it.
 

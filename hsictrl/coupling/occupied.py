@@ -232,6 +232,38 @@ class OccupiedBridge(ct.StateSpace):
         ordinary = np.abs(s)**2 * (1 + mass) + self.bridge.omega.max()**2
         return np.asarray(np.abs(stiffness).max(axis=(1, 2)) > 1e4 * ordinary)
 
+    def zeros(self) -> Complex:
+        """Zeros from force to acceleration; the host's plots choose their frequencies by poles and zeros.
+
+        A constant force accelerates nothing: two zeros per port lie at the origin, where rounding would leave them
+        at random tiny frequencies. With a port for each mode the rest are the poles of the bodies, each of which
+        holds the deck still under itself.
+
+        Returns
+        -------
+        array of complex
+            Zeros [rad/s].
+
+        Raises
+        ------
+        NotImplementedError
+            By the host, for more inputs than outputs, or fewer, with more modes than either.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> couple(reference_bridge(frequency=2.0), Pedestrian(), [25.0]).zeros().round(3)
+        array([ 0.   +0.j  ,  0.   +0.j  , -6.126+19.48j, -6.126-19.48j])
+        """
+        ports = min(np.linalg.matrix_rank(shapes) for shapes in (self._drive, self._sense))
+        if ports == self.bridge.n_modes:
+            people = self.people
+            poles = people.omega * (-people.damping + 1j * np.sqrt(1 - people.damping**2))
+            return np.concatenate([np.zeros(2 * ports), poles, poles.conj()])
+        found = np.asarray(super().zeros())
+        found[np.argsort(np.abs(found))[:2 * ports]] = 0
+        return found
+
     def respond(self, s: Complex, modal_forces: Any) -> Complex:
         """Accelerations under modal forces, in the Laplace domain: a crowd's forces move, but act through few modes.
 

@@ -3,5 +3,6 @@
 from hsictrl.pedestrian.body import Body, Pedestrian
 from hsictrl.pedestrian.crowd import Crowd
 from hsictrl.pedestrian.population import Population
+from hsictrl.pedestrian.reduced import ReducedCrowd
 
-__all__ = ["Body", "Crowd", "Pedestrian", "Population"]
+__all__ = ["Body", "Crowd", "Pedestrian", "Population", "ReducedCrowd"]

@@ -6,14 +6,14 @@ from hsictrl.bridge import Footbridge
 
 
 def check_vertical(bridge: Footbridge, mode: int = 0) -> None:
-    """Refuse a bridge with a mode that walking can't excite.
+    """Refuse a mode that walking can't excite.
 
     Parameters
     ----------
     bridge : Footbridge
         The empty bridge.
     mode : int
-        Which mode, from 0 [-].
+        Which mode of the bridge, from 0 [-].
 
     Raises
     ------
@@ -26,6 +26,7 @@ def check_vertical(bridge: Footbridge, mode: int = 0) -> None:
     >>> check_vertical(reference_bridge())
     """
     if not bridge.moves_vertically(mode):
-        name = f"mode {mode}" if mode else "the first mode"
+        name, remedy = (f"mode {mode}", "choose another") if mode else (
+            "the first mode", "describe the bridge with a vertical mode first")
         raise ValueError(f"{name} must move vertically, got a shape that does not at its antinode; walking forces are "
-                         f"vertical, so {'take another' if mode else 'describe the bridge with a vertical mode first'}")
+                         f"vertical, so {remedy}")

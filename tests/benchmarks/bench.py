@@ -218,4 +218,4 @@ def rows() -> Iterator[Row]:
 
 
 if __name__ == "__main__":
-    show("one thread, one run, medians", rows, memory)
+    show("systems", "one thread, one run, medians", rows, memory)
