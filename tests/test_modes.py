@@ -176,7 +176,7 @@ def test_steps_are_tuned_to_either_mode(model):
     for mode in (0, 1):
         system = carriers.get(model) or hsi.couple(bridge, *traffic.standing_on(bridge))
         expected = hsi.effective(system, mode=mode).frequency
-        assert hsi.tune(model, bridge, traffic, mode=mode).target == pytest.approx(expected, rel=1e-4)
+        assert hsi.tune(model, bridge.led_by(mode), traffic).target == pytest.approx(expected, rel=1e-4)
 
 
 def test_studies_and_instants_know_modes():
@@ -196,8 +196,6 @@ def test_studies_and_instants_know_modes():
     (lambda: hsi.effective(close(0.05), mode=2), ValueError, "mode must be below the number of modes 2, got 2"),
     (lambda: hsi.effective_map(hsi.couple(close(0.05), hsi.Pedestrian(), [25.0]).condensed, [2.0], [0.005]), ValueError,
      "the crowd must stand on one mode, got 2; use effective"),
-    (lambda: hsi.tune("MF", close(0.05), hsi.CrowdFlow(density=0.1).sample(close(0.05), rng=np.random.default_rng(1)),
-                      mode=2), ValueError, "mode must be below the number of modes 2, got 2"),
 ])
 def test_refusals(make, error, message):
     with pytest.raises(error, match=message):

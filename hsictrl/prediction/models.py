@@ -223,21 +223,19 @@ def _response(
         plot_inputs=False, sysname=system.name, title=f"{system.name}: acceleration")
 
 
-def tune(model: str, bridge: Footbridge, traffic: Traffic, *, mode: int = 0) -> Traffic:
+def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     """Tune traffic to a model's own resonance, the load case of section 2.2.
 
     Parameters
     ----------
     model : {"SF", "MF", "MFAM", "PMC", "MC"}
-        "SF" and "MF" meet a mode of the empty bridge, "MFAM" that of the bridge with the mass of this
-        traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd. A bridge
-        with absorbers has its effective frequency in all of them.
+        "SF" and "MF" meet the empty bridge's first mode (`Footbridge.led_by` puts another first), "MFAM" that of
+        the bridge with the mass of this traffic's standing crowd, "PMC" and "MC" the effective frequency of the
+        bridge with that crowd. A bridge with absorbers has its effective frequency in all of them.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
         Who walks over it.
-    mode : int
-        Which mode of the bridge, from 0 [-].
 
     Returns
     -------
@@ -255,8 +253,7 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic, *, mode: int = 0) -> 
     [2.0, 2.0, 1.818, 1.754, 1.754]
     """
     system = _system(model, bridge, traffic, None)
-    check_vertical(bridge, mode)
-    resonant = effective(system, mode=mode) if len(system.people) else system.bridge.mode(mode)
+    resonant = effective(system) if len(system.people) else system.bridge.modes[0]
     return _tuned(traffic, resonant.frequency)
 
 
