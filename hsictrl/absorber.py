@@ -17,7 +17,7 @@ from hsictrl.pedestrian import Body, Crowd
 from hsictrl.pedestrian.body import RULES
 from hsictrl.resonance.effective import effective
 
-FINE = 1e-7      # to which the logarithms of frequency and damping, and of the peak, are found
+FINE = 1e-6      # to which the logarithms of frequency and damping, and of the peak, are found
 REACH = 0.05     # first steps of the search in them
 STILL = 1e-6     # of the motion at an antinode: an absorber there would be a millionth squared of its mass
 ROUNDS = 2       # a simplex may lie flat along the kink where two peaks are equal: it is set up anew

@@ -230,6 +230,14 @@ def test_prediction_by_the_moving_crowd_has_it():
     assert within < 0.7 * without
 
 
+def test_an_assessment_has_it_and_says_that_the_guide_has_not():
+    bridge = hsi.Footbridge.simply_supported(length=10.0, width=3.0, mass=50e3, frequency=2.0, damping=0.01)
+    found = hsi.assess(bridge.with_absorbers(TMD, at=[5.0]), hsi.CrowdFlow(density=0.1),
+                       rule=hsi.PercentileRule(tolerance=0.5))
+    assert "the guide's value is that of the bridge without its absorbers" in found.remarks
+    assert found.effective.estimate[1] > np.sqrt(0.02 * 1.02 / 8)       # an undamped mode can have that much
+
+
 @pytest.mark.parametrize("model", ["MF", "PMC"])
 def test_the_spectral_estimate_has_it(model):
     """An absorber without mass changes nothing, one of 2 % lowers the response."""

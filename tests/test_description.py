@@ -75,6 +75,8 @@ def test_every_force(written, text, force):
                                                            sprung_ratio=1))]),
     ("density = 1.0\npopulation.mass = 80",     # what is left out stays that of walkers
      [hsi.CrowdFlow(density=1.0, population=replace(hsi.Population.walking(), mass=80))]),
+    ("density = 1.0\npopulation = {posture = 'upright', mass = 80}",
+     [hsi.CrowdFlow(density=1.0, population=replace(hsi.Population.standing(), mass=80))]),
 ])
 def test_every_traffic(written, text, flows):
     assert read_description(written("[traffic]\n" + text)).flows == tuple(flows)
@@ -128,6 +130,7 @@ def test_example_at_the_top_of_the_module_runs(written):
      r"line 4, \[traffic.population\] direction: key must be one of 'frequency', 'damping', 'mass', 'sprung_ratio'"),
     ("[traffic.population]\ndamping = 30",
      r"line 2, \[traffic.population\] damping: damping must be below 1, got 30; give a fraction, not percent"),
+    ("[traffic.population]\nposture = 'seated'", r"line 2, .*posture must be one of 'bent legs', 'upright', got 'seat"),
     ("[traffic.population]\nmass = [75, true]", r"mass must be a number or \[mean, .*, got \[75, True"),
     ("[force]\nmodel = 'harmonic'", r"line 1, \[force\]: the table must hold 'factors', got no 'factors'"),
     ("[force]\nmodel = 'young'\nvalues = 'worst'", r"line 3, \[force\] values: values must be one of 'mean', 'design'"),

@@ -249,3 +249,11 @@ rng = np.random.default_rng(0)
 def test_refusals(make, error, message):
     with pytest.raises(error, match=message):
         make()
+
+
+def test_crowds_add_up():
+    people, others = (hsi.Crowd(mass=mass, frequency=3.0, damping=0.3, direction=direction)
+                      for mass, direction in (([70.0, 80.0], "vertical"), ([90.0], "lateral")))
+    assert list(people + others) == [*people, *others]
+    with pytest.raises(TypeError, match="unsupported operand"):
+        people + others[0]

@@ -184,8 +184,9 @@ def _remarks(
     drawn = flow.sample(bridge, rng=np.random.default_rng(0))
     outside = f"{bridge.modes[0].frequency:g} Hz lies outside the range for which HiVoSS has a load"
     silent = () if guide.reduction else (outside,)
+    bare = ("the guide's value is that of the bridge without its absorbers",) if bridge.absorbers else ()
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
-    return (*dict.fromkeys(drawn.remarks + tuned), *silent, *unsettled)
+    return (*dict.fromkeys(drawn.remarks + tuned), *silent, *bare, *unsettled)
 
 
 def _left_out(bridge: Footbridge, mode: int, cases: tuple[GuideCase, ...]) -> tuple[str, ...]:

@@ -40,7 +40,8 @@ Unknown keys are refused. An example::
 "csv"                shapes, modes (files of `Footbridge.from_csv`, seen from here), width, mass
 ``[[absorbers]]``    mass, frequency, damping, at (x or [x, y]); direction
 ``[traffic]``        ; density or persons or classes, goal, speed, step_frequency (a number or [mean, sd]), weight
-``[.population]``    ; frequency, damping, mass (a number or [mean, sd]), sprung_ratio
+``[.population]``    ; posture ("bent legs" or "upright"), and what differs from it: frequency, damping, mass (a
+                     number or [mean, sd]), sprung_ratio
 ``[force]`` model    keys
 "zivanovic"          ; spacing, scaling
 "young"              ; values
@@ -64,9 +65,10 @@ from hsictrl.cli.schema import Keys, Table
 from hsictrl.comfort import COMFORT_CLASSES
 from hsictrl.crowd import TRAFFIC_CLASSES, CrowdFlow
 from hsictrl.pedestrian import Population
+from hsictrl.pedestrian.population import POSTURES
 from hsictrl.walking import HarmonicForce, WalkingForce, YoungForce, ZivanovicForce
 
-FORCE = "zivanovic"
+FORCE, POSTURE = "zivanovic", "bent legs"
 DENSITIES = (0.2, 0.5, 0.8, 1.0, 1.5)   # persons/m², section 4.2
 
 
@@ -209,7 +211,8 @@ _FORCES = {
 _AMOUNTS: Keys = {"density": schema.ONE_OR_MORE, "persons": schema.COUNTS, "classes": schema.WORDS}
 _TRAFFIC: Keys = {**_AMOUNTS, "goal": schema.WORDS, "speed": schema.NUMBER, "step_frequency": schema.NORMAL,
                   "weight": schema.NUMBER, "population": schema.TABLE}
-_POPULATION: Keys = {**dict.fromkeys(("frequency", "damping", "mass"), schema.NORMAL), "sprung_ratio": schema.NUMBER}
+_POPULATION: Keys = {**dict.fromkeys(("frequency", "damping", "mass"), schema.NORMAL), "sprung_ratio": schema.NUMBER,
+                     "posture": schema.TEXT}
 
 
 def _bridge(table: Table) -> Footbridge:
@@ -279,7 +282,10 @@ def _words(table: Table, key: str, given: tuple[Any, ...], options: tuple[str, .
 
 
 def _population(table: Table) -> Population:
-    return table.make(partial(replace, Population.walking()), table.read(_POPULATION))
+    values = table.read(_POPULATION)
+    posture = {"value": values.pop("posture", POSTURE)}
+    people = POSTURES[table.make(partial(check.choice, "posture", options=tuple(POSTURES)), posture)]
+    return table.make(partial(replace, people), values)
 
 
 PARTS: dict[str, tuple[str, Callable[[Table], Any]]] = {

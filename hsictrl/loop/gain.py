@@ -106,7 +106,7 @@ def loop_gain(
     The bridge turns modal forces into modal accelerations by its accelerance G = s²D₀⁻¹, and the crowd holds
     A times these accelerations against it, A the modal apparent mass. The loop is opened at the modal forces,
     so that the occupied bridge is the empty one behind (I + L)⁻¹, see `sensitivity`. Opened at the modal
-    accelerations, its gain is the transpose.
+    accelerations, its gain is the transpose. Absorbers of the bridge count as bodies of the crowd here.
 
     Parameters
     ----------

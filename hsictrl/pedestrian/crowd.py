@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Crowd(SprungBody):
-    """Bodies of n people as arrays.
+    """Bodies of n people as arrays. Crowds add up: ``people + others``.
 
     Parameters
     ----------

@@ -157,7 +157,8 @@ def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Predictio
     """
     system = _system(model, bridge, traffic, None)
     found = _resonances(system)
-    return _predicted(system, found, _tuned(traffic, system, found), None, None)
+    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
+    return _predicted(system, found, _tuned(traffic, resonant.frequency), None, None)
 
 
 def _predicted(
@@ -228,9 +229,9 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     Parameters
     ----------
     model : {"SF", "MF", "MFAM", "PMC", "MC"}
-        "SF" and "MF" meet the empty bridge's first mode, "MFAM" that of the bridge with the mass of this
-        traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd. A bridge
-        with absorbers has its effective frequency in all of them.
+        "SF" and "MF" meet the empty bridge's first mode (`Footbridge.led_by` puts another first), "MFAM" that of
+        the bridge with the mass of this traffic's standing crowd, "PMC" and "MC" the effective frequency of the
+        bridge with that crowd. A bridge with absorbers has its effective frequency in all of them.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
@@ -252,12 +253,11 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     [2.0, 2.0, 1.818, 1.754, 1.754]
     """
     system = _system(model, bridge, traffic, None)
-    return _tuned(traffic, system, [effective(system)] if len(system.people) else [])
+    resonant = effective(system) if len(system.people) else system.bridge.modes[0]
+    return _tuned(traffic, resonant.frequency)
 
 
-def _tuned(traffic: Traffic, system: OccupiedBridge, found: Resonances) -> Traffic:
-    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
-    frequency = resonant.frequency
+def _tuned(traffic: Traffic, frequency: float) -> Traffic:
     return traffic.tuned(resonant_step_frequency(frequency)[0])
 
 
