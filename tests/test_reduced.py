@@ -266,6 +266,12 @@ def test_nothing_is_proven_for_an_undamped_bridge_under_others_than_its_crowd():
     assert far.bound(beam()) == np.inf
 
 
+def test_crowds_that_no_mode_feels_do_not_differ():
+    people, ends = hsi.Crowd(mass=[70.0, 80.0], frequency=3.0, damping=0.3), np.zeros((2, 2))
+    idle = hsi.ReducedCrowd(people=people.part([0]), positions=ends[:1], full_people=people, full_positions=ends)
+    assert idle.bound(beam()) < 1e-12
+
+
 # --- refusals and manners --------------------------------------------------------------------------
 
 @pytest.mark.parametrize(("order", "rule"), [
