@@ -21,7 +21,16 @@ from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, is
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
 from hsictrl.crowd import CrowdFlow, Traffic, Walker, Walkers, resonant_step_frequency, weidmann_speed
 from hsictrl.identify import FreeDecay, free_decay
-from hsictrl.loop import AmplifiedBands, LoopGain, Sensitivity, amplified_bands, loop_gain, sensitivity
+from hsictrl.loop import (
+    AmplifiedBands,
+    LoopGain,
+    RootLocus,
+    Sensitivity,
+    amplified_bands,
+    loop_gain,
+    root_locus,
+    sensitivity,
+)
 from hsictrl.pedestrian import Crowd, Pedestrian, Population
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
 from hsictrl.resonance import (
@@ -55,11 +64,11 @@ __all__ = [
     "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce",
     "LateralTorsionShape", "Ledger", "LoopGain", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode",
     "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population",
-    "Prediction", "SampledShape", "Sensitivity", "Shape", "Simulation", "SineShape", "SpectralEstimate", "StopRule",
-    "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "amplified_bands",
-    "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective", "effective_along",
-    "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value", "interconnect",
-    "iso10137_limit", "loop_gain", "monte_carlo", "moving_crowd", "predict", "reference_bridge",
-    "resonant_step_frequency", "sensitivity", "simulate", "spectral_estimate", "study_effective", "sweep",
-    "trial_rng", "tune", "weidmann_speed",
+    "Prediction", "RootLocus", "SampledShape", "Sensitivity", "Shape", "Simulation", "SineShape",
+    "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce",
+    "ZivanovicForce", "amplified_bands", "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge",
+    "effective", "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf",
+    "guide_value", "interconnect", "iso10137_limit", "loop_gain", "monte_carlo", "moving_crowd", "predict",
+    "reference_bridge", "resonant_step_frequency", "root_locus", "sensitivity", "simulate", "spectral_estimate",
+    "study_effective", "sweep", "trial_rng", "tune", "weidmann_speed",
 ]
