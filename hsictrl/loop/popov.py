@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from scipy.linalg import eigvals, matrix_balance, solve_continuous_are
 
 from hsictrl._checks import Array
 
-Complex = NDArray[np.complex128]
+Complex = NDArray[np.complexfloating[Any, Any]]
 Matrices = tuple[Array, Array, Array, Array]
 SMALL = 1e-9            # of the size of what is compared, below which it is rounding
 ROUNDS = 30
@@ -32,12 +33,12 @@ def margin(matrices: Matrices) -> Margin:
     among their imaginary parts nothing crosses, so that one look there decides; the level is then lowered
     to what was seen, until nothing lies below (Boyd, Balakrishnan and Kabamba, 1989).
     """
-    poles = np.linalg.eigvals(matrices[0]).astype(complex)
+    poles: Complex = np.linalg.eigvals(matrices[0]).astype(complex)
     size = np.abs(poles).max(initial=0.0) or 1.0
-    on_axis = np.unique(np.abs(poles[np.abs(poles.real) <= SMALL * size].imag))
+    on_axis: Array = np.unique(np.abs(poles[np.abs(poles.real) <= SMALL * size].imag))
     smallest, at, relative = _descend(matrices, np.concatenate([[0.0, 1e6 * size], np.abs(poles)]), on_axis, size)
     growing = poles[poles.real > SMALL * size]
-    residues = _popov(matrices, (1j * on_axis + 1e-5 * size).astype(complex))[1]
+    residues = _popov(matrices, 1e-5 * size + 1j * on_axis)[1]
     objection = ""
     if len(growing):
         objection = f"a pole at {growing[np.argmax(growing.real)]:.4g} rad/s grows"

@@ -8,6 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
+from hsictrl.loop.determinant import determinant
 from hsictrl.loop.merged import own_poles
 from hsictrl.pedestrian import Crowd, Pedestrian
 
@@ -15,7 +16,6 @@ Complex = NDArray[np.complex128]
 ROUNDS = 60
 SETTLED = 1e-12         # of a pole's size; the order is three, so that the next step would be nothing
 FAR = 0.1               # of a pole's size, further than which no first guess may lie from it
-TINY = 1e-200
 APART = 1e-14           # mass ratio below which a body's pole is its own, to rounding
 
 
@@ -61,11 +61,14 @@ class Secular:
         poles = np.sum(1 / upper + 1 / lower, axis=1)
         return z**2 * mass + z * self.viscous + self.square, grown, poles
 
-    def growth(self, s: Complex) -> Complex:
-        """d/ds ln of det D(s) times the bodies' denominators, a polynomial whose zeros are the poles sought."""
+    def step(self, s: Complex, others: Complex) -> Complex:
+        """Newton's step towards a zero of p(s), det D(s) times the bodies' denominators, over all it has elsewhere.
+
+        That is 1/(p′/p − others), with the sum of 1/(s − z) over all other zeros z.
+        """
         stiffness, slope, poles = self.stiffness(s)
-        stiffness += TINY * np.eye(len(self.mass))    # on a pole of a mode that nobody moves, D may be zero to the bit
-        return np.asarray(np.trace(np.linalg.solve(stiffness, slope), axis1=1, axis2=2) + poles)
+        value, growth = determinant(stiffness, slope)
+        return np.asarray(value / (growth + value * (poles - others)))
 
     def _summed(self, weights: Complex) -> Complex:
         n_m = self.rows.shape[1]
@@ -127,10 +130,7 @@ def _step(secular: Secular, z: Complex, moving: NDArray[np.intp]) -> Complex:
     apart = z[moving, None] - z
     apart[np.arange(len(moving)), moving] = np.inf
     with np.errstate(all="ignore"):
-        try:
-            return np.asarray(1 / (secular.growth(z[moving]) - np.sum(1 / apart, axis=1)))
-        except np.linalg.LinAlgError:
-            return np.full(len(moving), np.nan + 0j)
+        return secular.step(z[moving], np.sum(1 / apart, axis=1))
 
 
 def _combinations(rows: Array) -> Array:
