@@ -15,7 +15,7 @@ from hsictrl.coupling import OccupiedBridge, OccupiedMeasurement
 
 Complex = NDArray[np.complex128]
 POINTS = 2001
-AROUND = np.geomspace(1e-6, 0.1, 41)    # beside a mode of little damping the loop gain turns within its bandwidth
+AROUND = np.geomspace(1e-6, 0.1, 81)    # beside a mode of little damping the loop gain turns within its bandwidth
 REMEDY = "make one with couple(bridge, people, positions)"
 
 
