@@ -31,7 +31,20 @@ from hsictrl.crowd import (
     weidmann_speed,
 )
 from hsictrl.identify import FreeDecay, SubspaceIdentification, SubspaceMode, free_decay, subspace_identification
-from hsictrl.loop import AmplifiedBands, LoopGain, Sensitivity, amplified_bands, loop_gain, sensitivity
+from hsictrl.loop import (
+    AmplifiedBands,
+    LoopGain,
+    Passivity,
+    PoleScatter,
+    RootLocus,
+    Sensitivity,
+    amplified_bands,
+    loop_gain,
+    passivity,
+    pole_scatter,
+    root_locus,
+    sensitivity,
+)
 from hsictrl.measurement import virtual_measurement
 from hsictrl.pedestrian import Body, Crowd, Pedestrian, Population, ReducedCrowd
 from hsictrl.prediction import Prediction, SpectralEstimate, predict, spectral_estimate, tune
@@ -65,13 +78,13 @@ __all__ = [
     "Absorber", "AllRules", "AmplifiedBands", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow",
     "EffectiveProperties", "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce",
     "LateralTorsionShape", "Ledger", "LoopGain", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd",
-    "OccupiedBridge", "OccupiedMeasurement", "Pedestrian", "PercentileRule", "Population", "Prediction", "ReducedCrowd",
-    "SampledShape", "Sensitivity", "Shape", "Simulation", "SineShape", "SpectralEstimate", "StopRule",
-    "SubspaceIdentification", "SubspaceMode", "Sweep", "Traffic", "Trajectory", "Walker", "Walkers", "WalkingForce",
-    "YoungForce", "ZivanovicForce", "amplified_bands", "assess", "comfort_class", "couple", "design_acceleration",
-    "eeklo_bridge", "effective", "effective_along", "effective_map", "effective_sensitivity", "en1990_limit",
-    "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit", "loop_gain", "monte_carlo", "moving_crowd",
-    "predict", "preferred_step_frequency", "reference_bridge", "resonant_step_frequency", "sensitivity", "simulate",
-    "spectral_estimate", "study_effective", "subspace_identification", "sweep", "trial_rng", "tune",
-    "virtual_measurement", "weidmann_speed",
+    "OccupiedBridge", "OccupiedMeasurement", "Passivity", "Pedestrian", "PercentileRule", "PoleScatter", "Population",
+    "Prediction", "ReducedCrowd", "RootLocus", "SampledShape", "Sensitivity", "Shape", "Simulation", "SineShape",
+    "SpectralEstimate", "StopRule", "SubspaceIdentification", "SubspaceMode", "Sweep", "Traffic", "Trajectory",
+    "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "amplified_bands", "assess", "comfort_class",
+    "couple", "design_acceleration", "eeklo_bridge", "effective", "effective_along", "effective_map",
+    "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit",
+    "loop_gain", "monte_carlo", "moving_crowd", "passivity", "pole_scatter", "predict", "preferred_step_frequency",
+    "reference_bridge", "resonant_step_frequency", "root_locus", "sensitivity", "simulate", "spectral_estimate",
+    "study_effective", "subspace_identification", "sweep", "trial_rng", "tune", "virtual_measurement", "weidmann_speed",
 ]
