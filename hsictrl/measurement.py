@@ -67,6 +67,7 @@ def virtual_measurement(
     >>> occupied = hsi.couple(hsi.reference_bridge(), hsi.Pedestrian(), np.linspace(0, 50, 15))
     >>> record = virtual_measurement(occupied, sense_at=[12.5, 25.0, 37.5], rng=np.random.default_rng(1))
     >>> record.outputs.shape, record.outputs.std(axis=1).round(4)
+    ((3, 30000), array([0.0085, 0.012 , 0.0085]))
     """
     check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
     check.instance("system", system, (OccupiedBridge, MovingCrowd), "make it with couple, or with moving_crowd")
@@ -74,8 +75,8 @@ def virtual_measurement(
     spread = check.number("noise", noise, least=0, remedy="give m/s², 0 for none")
     if isinstance(system, MovingCrowd):
         if force is not None:
-            raise TypeError(f"force must go with people who stand, got {force!r} N with a moving crowd, which drives the "
-                            "bridge itself; leave it out")
+            raise TypeError(f"force must go with people who stand, got {force!r} N with a moving crowd, which drives "
+                            "the bridge itself; leave it out")
         time = _times(system, duration, rate)
         exact = np.atleast_2d(simulate(system, time, sense_at=sense_at).response.outputs)
     else:

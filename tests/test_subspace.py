@@ -177,7 +177,7 @@ NOISE = np.random.default_rng(0).standard_normal((3, len(TIME)))
     ({"references": [1, 1]}, r"references must be different outputs below 3, got \[1, 1\]; count from 0"),
     ({"record": NOISE[0], "references": [1]}, r"references must be different outputs below 1, got \[1\]; count"),
     ({"references": []}, "references must hold at least one, got none; give a list of some"),
-    ({"record": np.where(TIME == TIME[7], np.nan, NOISE)}, r"record\[0, 7\] must be finite, got nan; cut or fill"),
+    ({"record": np.where(TIME[7] == TIME, np.nan, NOISE)}, r"record\[0, 7\] must be finite, got nan; cut or fill"),
     ({"record": np.vstack([NOISE, 0 * TIME])}, r"every output must vibrate, got none in 3; leave it out"),
     ({"timepts": TIME**2}, "times of a record must increase evenly"),
     ({"timepts": TIME[1:]}, r"record must hold one value per output and time, got shape \(3, 6000\) for 5999 times"),

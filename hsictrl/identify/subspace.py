@@ -204,6 +204,9 @@ def subspace_identification(
     ...                       sense_at=[12.5, 25.0, 37.5])
     >>> record = hsi.virtual_measurement(occupied, rng=np.random.default_rng(1))
     >>> print(subspace_identification(record, highest=3.0))
+    1.9740 Hz [1.9700, 1.9780], 0.624 % [0.447, 0.801] (subspace, order 2)
+    >>> print(hsi.effective(occupied, method="pole"))
+    1.9726 Hz, 0.716 % (pole), |H| = 0.002696 m/s² per N
     """
     time, outputs = signals(record, timepts)
     most = check.whole("order", order, least=4, remedy="give twice the number of modes that you expect, and more")
@@ -241,8 +244,8 @@ def _reduced(outputs: Array, time: Array, highest: float) -> tuple[Array, float]
     given = (len(time) - 1) / float(time[-1] - time[0])
     most = check.number("highest", highest, above=0, remedy="give the frequency [Hz] up to which modes are sought")
     if given < MARGIN * most:
-        raise ValueError(f"record must be sampled at {MARGIN:g} times highest={most:g} Hz at least, got {given:.4g} Hz; "
-                         "sample it faster, or seek slower modes")
+        raise ValueError(f"record must be sampled at {MARGIN:g} times highest={most:g} Hz at least, got {given:.4g} "
+                         "Hz; sample it faster, or seek slower modes")
     factor = int(given / (MARGIN * most) + 1e-9)
     level = detrend(outputs, axis=1)
     still = np.flatnonzero(np.std(level, axis=1) <= STILL * np.max(np.abs(outputs)))
@@ -262,7 +265,8 @@ def _references(given: Sequence[int] | None, outputs: int) -> list[int]:
     """Indices of the reference channels."""
     if given is None:
         return list(range(outputs))
-    chosen = [check.whole("references", index, least=0, remedy="count from 0") for index in check.several("references", given)]
+    chosen = [check.whole("references", index, least=0, remedy="count from 0")
+              for index in check.several("references", given)]
     if max(chosen) >= outputs or len(set(chosen)) < len(chosen):
         raise ValueError(f"references must be different outputs below {outputs}, got {chosen}; count from 0")
     return chosen

@@ -17,6 +17,7 @@ from hsictrl.paper.eeklo import BRIDGE, POSTURES, SETUPS, beside_centre, setup
 from hsictrl.paper.intervals import Interval
 from hsictrl.paper.reports import Report, Rows, Run, committed
 from hsictrl.paper.studies import study_each
+from hsictrl.paper.virtual_tests import PACES
 from hsictrl.pedestrian import Crowd, Population
 from hsictrl.resonance import effective
 from hsictrl.study import Ensemble
@@ -140,12 +141,30 @@ def _draw(rows: Rows) -> ct.ControlPlot:
     for condition, posture in product(CONDITIONS, POSTURES):
         label = f"{posture}, lateral bodies too" if condition.lateral else posture
         panels[condition.name][label] = _curves(condition, chosen(rows, condition.name, posture, condition.lateral))
+    panels["vertical"] |= _identified(rows)
     return plots.bands_plot({f"{name} mode": curves for name, curves in panels.items()})
+
+
+def _identified(rows: Rows) -> dict[str, dict[str, Any]]:
+    """Where people walk: the model's band; beside it, what walking and free decays show, each a little aside."""
+    along = _series(chosen(rows, "vertical", identified.ALONG), 0.0, "filled")
+    walked = {pace: _series(chosen(rows, "vertical", pace, source="subspace"), 0.5 * i, "bars")
+              for i, pace in enumerate(PACES, -1)}
+    decays = {f"free decay, {posture}": _series(chosen(rows, "vertical", posture, source="free decay"), -0.3, "bars")
+              for posture in reversed(POSTURES)}
+    return {identified.ALONG: along, **walked, **decays}
 
 
 def _curves(condition: Condition, rows: Rows) -> dict[str, Any]:
     """Over the number of persons, from the empty bridge on: three rows of each quantity."""
     frequency, damping = effective(BRIDGE, mode=condition.mode)
-    return {"persons": [0, *(row["persons"] for row in rows)], "hatched": condition.lateral,
-            "frequency": [[frequency, *(row[f"f_eff_{s}_hz"] for row in rows)] for s in STATISTICS],
-            "damping": [[damping, *(row[f"xi_eff_{s}"] for row in rows)] for s in STATISTICS]}
+    empty = {"persons": 0, **dict.fromkeys((f"f_eff_{s}_hz" for s in STATISTICS), frequency),
+             **dict.fromkeys((f"xi_eff_{s}" for s in STATISTICS), damping)}
+    return _series([empty, *rows], 0.0, "hatched" if condition.lateral else "filled")
+
+
+def _series(rows: Rows, aside: float, look: str) -> dict[str, Any]:
+    """Three rows of each quantity over the number of persons."""
+    return {"persons": [row["persons"] + aside for row in rows], "look": look,
+            "frequency": [[row[f"f_eff_{s}_hz"] for row in rows] for s in STATISTICS],
+            "damping": [[row[f"xi_eff_{s}"] for row in rows] for s in STATISTICS]}
