@@ -4,7 +4,7 @@ A bridge is a set of modes; a walker is a sprung body that pushes back on the de
 loop around the bridge. Van Nimmen, Lombaert, De Roeck & Van den Broeck (2017) is implemented throughout.
 """
 
-from hsictrl.assessment import Assessment, assess, guide_value, study_effective
+from hsictrl.assessment import Assessment, GuideCase, assess, guide_cases, guide_value, study_effective
 from hsictrl.bridge import (
     BeamShape,
     Footbridge,
@@ -17,7 +17,7 @@ from hsictrl.bridge import (
     eeklo_bridge,
     reference_bridge,
 )
-from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, iso10137_limit
+from hsictrl.comfort import comfort_class, comfort_verdict, design_acceleration, en1990_limit, iso10137_limit
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
 from hsictrl.crowd import CrowdFlow, Traffic, Walker, Walkers, resonant_step_frequency, weidmann_speed
 from hsictrl.identify import FreeDecay, free_decay
@@ -51,13 +51,13 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AllRules", "Assessment", "BeamShape", "Crowd", "CrowdFlow", "EffectiveProperties", "EffectiveSensitivity",
-    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce", "LateralTorsionShape", "Ledger",
+    "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "GuideCase", "HarmonicForce", "LateralTorsionShape", "Ledger",
     "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement",
     "Pedestrian", "PercentileRule", "Population", "Prediction", "SampledShape", "Shape", "Simulation", "SineShape",
     "SpectralEstimate", "StopRule", "Sweep", "Traffic", "Walker", "Walkers", "WalkingForce", "YoungForce",
-    "ZivanovicForce", "assess", "comfort_class", "couple", "design_acceleration", "eeklo_bridge", "effective",
-    "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value",
-    "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict", "reference_bridge",
-    "resonant_step_frequency", "simulate", "spectral_estimate", "study_effective", "sweep", "trial_rng", "tune",
-    "weidmann_speed",
+    "ZivanovicForce", "assess", "comfort_class", "comfort_verdict", "couple", "design_acceleration", "eeklo_bridge",
+    "effective", "effective_along", "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf",
+    "guide_cases", "guide_value", "interconnect", "iso10137_limit", "monte_carlo", "moving_crowd", "predict",
+    "reference_bridge", "resonant_step_frequency", "simulate", "spectral_estimate", "study_effective", "sweep",
+    "trial_rng", "tune", "weidmann_speed",
 ]

@@ -77,7 +77,7 @@ def _sections(
 ) -> list[Section]:
     one, (frequencies, history, settles) = found[0], response_pictures(largest)
     return [
-        Section(title="Answer", text=answer(largest), tables=[answer_table(found)]),
+        Section(title="Answer", text=answer(found, largest), tables=[answer_table(found)]),
         Section(title="Inputs", tables=[deck_table(one), traffic_table(found)], quoted=description),
         Section(title="Modes", text=[resonance(one)], tables=[modes_table(found)], pictures=[shapes_picture(largest)]),
         Section(title="Effective properties", tables=[effective_table(found)], pictures=[frequencies]),

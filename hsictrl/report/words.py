@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hsictrl import _checks as check
@@ -11,14 +13,13 @@ from hsictrl.pedestrian import Population
 from hsictrl.study import Ensemble, PercentileRule
 
 
-def answer(found: Assessment) -> list[str]:
-    """The largest acceleration, its class, and whether the goal is met."""
-    name, (without, within) = found.pmc.rule.labels[0], found.classes
-    said = [f"Under {found.flow}, {name} of the peak acceleration is {_told(found.pmc)} with human-structure "
-            f"interaction: comfort class {within}. Without interaction it is {_told(found.mf)}: {without}."]
-    if found.verdicts is not None:
-        said.append(f"Goal {found.goal}: {found.verdicts[1]} with interaction, {found.verdicts[0]} without.")
-    return said
+def answer(found: Sequence[Assessment], largest: Assessment) -> list[str]:
+    """The largest acceleration, its class, and whether goals are met."""
+    name, (without, within) = largest.pmc.rule.labels[0], largest.classes
+    goals = [f"{one.goal} under {one.flow}: {one.verdicts[1]}" for one in found if one.verdicts]
+    return [f"Under {largest.flow}, {name} of the peak acceleration is {_told(largest.pmc)} with human-structure "
+            f"interaction: comfort class {within}. Without interaction it is {_told(largest.mf)}: {without}.",
+            *([f"Goals, with interaction: {'; '.join(goals)}."] if goals else [])]
 
 
 def resonance(found: Assessment) -> str:
@@ -52,7 +53,7 @@ def _spread(given: float | tuple[float, float], scale: float = 1.0) -> str:
 
 
 def _told(ensemble: Ensemble) -> str:
-    low, high = ensemble.interval
+    (low, high), level = ensemble.interval, rule(ensemble).confidence
     settled = "" if ensemble.converged else ", not settled"
-    return (f"{significant(float(ensemble.estimate))} m/s² (95 % interval {significant(float(low))} to "
+    return (f"{significant(float(ensemble.estimate))} m/s² ({100 * level:g} % interval {significant(float(low))} to "
             f"{significant(float(high))}; {ensemble.n_trials} trials{settled})")
