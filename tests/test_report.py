@@ -169,7 +169,8 @@ def test_without_goals_there_is_no_column_for_them(found):
 def test_refusals(found):
     other = replace(found[1], mode=1)
     for given, kind, says in (
-            ([], ValueError, "found must hold at least one"), ([1], TypeError, "found must be of type Assessment, got int"),
+            ([], ValueError, "found must hold at least one"),
+            ([1], TypeError, "found must be of type Assessment, got int"),
             (found[0], TypeError, "found must be of type list or tuple"),
             ([found[0], other], ValueError, "found must be of one bridge, one mode and one force, got 4 persons of")):
         with pytest.raises(kind, match=says):

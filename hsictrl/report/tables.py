@@ -29,9 +29,11 @@ def answer_table(found: Sequence[Assessment]) -> Table:
     peak = f"a{rule(found[0].pmc).percentile:g}"
     head = ["Traffic", f"{peak} without interaction (MF) [m/s²]", f"{peak} with interaction (PMC) [m/s²]",
             "Reduction R_HSI [-]", "Comfort class, without → with"]
+    rows = [_answer(one) for one in found]
     if any(one.goal for one in found):
         head.append("Goal, without → with")
-    return Table(caption="Design accelerations", head=head, rows=[list(_answer(one, len(head))) for one in found])
+        rows = [[*row, _verdict(one)] for row, one in zip(rows, found, strict=True)]
+    return Table(caption="Design accelerations", head=head, rows=rows)
 
 
 def deck_table(one: Assessment) -> Table:
@@ -97,13 +99,13 @@ def versions_table() -> Table:
     return Table(caption="Versions", head=["Software", "Version"], rows=[[(name,), (one,)] for name, one in rows])
 
 
-def _answer(one: Assessment, columns: int) -> Iterator[Cell]:
-    yield (str(one.flow), f"{one.flow.persons_on(one.bridge)} people")
-    yield from (_estimate(ensemble) for ensemble in (one.mf, one.pmc))
-    yield (significant(one.reduction), _interval(*one.reduction_interval))
-    yield (" → ".join(one.classes),)
-    if columns > 5:
-        yield (" → ".join(one.verdicts), f"goal {one.goal}") if one.verdicts else NONE
+def _answer(one: Assessment) -> list[Cell]:
+    return [(str(one.flow), f"{one.flow.persons_on(one.bridge)} people"), _estimate(one.mf), _estimate(one.pmc),
+            (significant(one.reduction), _interval(*one.reduction_interval)), (" → ".join(one.classes),)]
+
+
+def _verdict(one: Assessment) -> Cell:
+    return (" → ".join(one.verdicts), f"goal {one.goal}") if one.verdicts else NONE
 
 
 def _effective(one: Assessment) -> list[Cell]:
