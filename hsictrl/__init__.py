@@ -5,7 +5,7 @@ loop around the bridge. Van Nimmen, Lombaert, De Roeck & Van den Broeck (2017) i
 """
 
 from hsictrl.absorber import Absorber
-from hsictrl.assessment import Assessment, assess, guide_value, study_effective
+from hsictrl.assessment import Assessment, GuideCase, assess, guide_cases, guide_value, study_effective
 from hsictrl.bridge import (
     BeamShape,
     Footbridge,
@@ -18,7 +18,7 @@ from hsictrl.bridge import (
     eeklo_bridge,
     reference_bridge,
 )
-from hsictrl.comfort import comfort_class, design_acceleration, en1990_limit, iso10137_limit
+from hsictrl.comfort import comfort_class, comfort_verdict, design_acceleration, en1990_limit, iso10137_limit
 from hsictrl.coupling import MovingCrowd, OccupiedBridge, OccupiedMeasurement, couple, interconnect, moving_crowd
 from hsictrl.crowd import (
     CrowdFlow,
@@ -76,15 +76,16 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Absorber", "AllRules", "AmplifiedBands", "Assessment", "BeamShape", "Body", "Crowd", "CrowdFlow",
-    "EffectiveProperties", "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "HarmonicForce",
-    "LateralTorsionShape", "Ledger", "LoopGain", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode", "MovingCrowd",
-    "OccupiedBridge", "OccupiedMeasurement", "Passivity", "Pedestrian", "PercentileRule", "PoleScatter", "Population",
-    "Prediction", "ReducedCrowd", "RootLocus", "SampledShape", "Sensitivity", "Shape", "Simulation", "SineShape",
-    "SpectralEstimate", "StopRule", "SubspaceIdentification", "SubspaceMode", "Sweep", "Traffic", "Trajectory",
-    "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "amplified_bands", "assess", "comfort_class",
-    "couple", "design_acceleration", "eeklo_bridge", "effective", "effective_along", "effective_map",
-    "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_value", "interconnect", "iso10137_limit",
-    "loop_gain", "monte_carlo", "moving_crowd", "passivity", "pole_scatter", "predict", "preferred_step_frequency",
-    "reference_bridge", "resonant_step_frequency", "root_locus", "sensitivity", "simulate", "spectral_estimate",
-    "study_effective", "subspace_identification", "sweep", "trial_rng", "tune", "virtual_measurement", "weidmann_speed",
+    "EffectiveProperties", "EffectiveSensitivity", "Ensemble", "Footbridge", "ForceLines", "FreeDecay", "GuideCase",
+    "HarmonicForce", "LateralTorsionShape", "Ledger", "LoopGain", "MainHarmonics", "MeanRule", "MeasuredBridge", "Mode",
+    "MovingCrowd", "OccupiedBridge", "OccupiedMeasurement", "Passivity", "Pedestrian", "PercentileRule", "PoleScatter",
+    "Population", "Prediction", "ReducedCrowd", "RootLocus", "SampledShape", "Sensitivity", "Shape", "Simulation",
+    "SineShape", "SpectralEstimate", "StopRule", "SubspaceIdentification", "SubspaceMode", "Sweep", "Traffic",
+    "Trajectory", "Walker", "Walkers", "WalkingForce", "YoungForce", "ZivanovicForce", "amplified_bands", "assess",
+    "comfort_class", "comfort_verdict", "couple", "design_acceleration", "eeklo_bridge", "effective", "effective_along",
+    "effective_map", "effective_sensitivity", "en1990_limit", "free_decay", "frf", "guide_cases", "guide_value",
+    "interconnect", "iso10137_limit", "loop_gain", "monte_carlo", "moving_crowd", "passivity", "pole_scatter",
+    "predict", "preferred_step_frequency", "reference_bridge", "resonant_step_frequency", "root_locus", "sensitivity",
+    "simulate", "spectral_estimate", "study_effective", "subspace_identification", "sweep", "trial_rng", "tune",
+    "virtual_measurement", "weidmann_speed",
 ]
