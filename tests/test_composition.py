@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import re
-from pathlib import Path
-from typing import Any
 
 import control as ct
 import matplotlib as mpl
@@ -364,21 +361,3 @@ def test_step_response_lasts_until_the_bridge_rests(n: int) -> None:
     assert record.outputs[0] == pytest.approx(occupied.D[0, 0])     # a force meets the mass first
     assert (record.plot().axes[0, 0].get_ylabel(), record.output_labels) == ("a[0]", ["a[0]"])
     plt.close("all")
-
-
-# --- the page -------------------------------------------------------------------------------------
-
-
-def test_the_recipes_run() -> None:
-    """Every piece of code on the page, one after the other, and what the page says of the results."""
-    page = (Path(__file__).parent.parent / "docs" / "compose.md").read_text()
-    recipes = dict[str, Any]()
-    for piece in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
-        exec(piece, recipes)
-    plt.close("all")
-    closed = recipes["closed"]
-    assert distance(ct.poles(closed), recipes["designed"]) < 1e-8 * np.abs(recipes["designed"]).max()
-    frequency, damping, _ = ct.damp(recipes["loaded"], doprint=False)
-    ratio = np.sqrt(25 / 27)
-    np.testing.assert_allclose([frequency[0], damping[0]], [4 * np.pi * ratio, 0.005 * ratio], rtol=1e-9)
-    assert np.abs(recipes["record"].outputs).max() > 0.01
