@@ -6,7 +6,8 @@ A controller that helps at one frequency harms at another; a crowd is no excepti
 """
 
 # %% [markdown]
-# **Goal.** You can read from the loop gain where people make a bridge move less and where more, and know what bounds both.
+# **Goal.** You can read from the loop gain where people make a bridge move less and where more, and know what
+# bounds both.
 #
 # Theory
 # ------
@@ -23,11 +24,11 @@ A controller that helps at one frequency harms at another; a crowd is no excepti
 #
 #     H_{HB} = S\, H_B, \qquad S = \frac{1}{1 + L}
 #
-# People help where \|S\| < 1, that is, where L keeps further than one from the point −1. Within the circle of radius one
-# around −1 they harm.
+# People help where \|S\| < 1, that is, where L keeps further than one from the point −1. Within the circle of
+# radius one around −1 they harm.
 #
-# Bridge and people are stable, so that Bode's integral holds. Since \|S\| tends to a constant S∞ = 1/(1 + κm₀) at high
-# frequencies,
+# Bridge and people are stable, so that Bode's integral holds. Since \|S\| tends to a constant S∞ = 1/(1 + κm₀)
+# at high frequencies,
 #
 # .. math::
 #
@@ -37,12 +38,12 @@ A controller that helps at one frequency harms at another; a crowd is no excepti
 # Tasks
 # -----
 #
-# 1. Compute L and S for 15 and 75 people on the 2 Hz reference bridge. Check S by ``hsi.frf`` with people and without, and by
-#    ``hsi.sensitivity``.
+# 1. Compute L and S for 15 and 75 people on the 2 Hz reference bridge. Check S by ``hsi.frf`` with people and
+#    without, and by ``hsi.sensitivity``.
 # 2. Draw the Nyquist curve of L with the circle around −1, and \|S\|. In which bands do people harm?
 # 3. Derive where harm turns into help, on an undamped bridge.
-# 4. Evaluate the right side of Bode's integral by hand, and the left side by a sum. What would it be for a controller
-#    whose L falls as 1/s²? What is special about people?
+# 4. Evaluate the right side of Bode's integral by hand, and the left side by a sum. What would it be for a
+#    controller whose L falls as 1/s²? What is special about people?
 # 5. At 1.86 Hz 75 people amplify by almost five. Why is the bridge better off with them?
 #
 # Hints
@@ -82,8 +83,8 @@ for n in (15, 75):
     assert np.allclose(ours, hsi.sensitivity(occupied)(2j * np.pi * hertz), rtol=1e-10)
 
 # %% [markdown]
-# **Task 2.** Just below the frequency of the bridge: people are mass, and the resonance has moved there. And, by less than
-# two percent, from 4.3 to 11 Hz, where bodies swing against the deck and take mass off it.
+# **Task 2.** Just below the frequency of the bridge: people are mass, and the resonance has moved there. And,
+# by less than two percent, from 4.3 to 11 Hz, where bodies swing against the deck and take mass off it.
 
 # %%
 def edges(n):
@@ -99,8 +100,8 @@ for n in (15, 75):
           f"and by {size[hertz > second].max():.3f} from {second:.2f} to {third:.1f} Hz")
 
 # %% [markdown]
-# **Task 3.** \|D₀ + κs²α\| = \|D₀\| with real D₀ gives ω² = ω_B²/(1 + κ\|α\|²/(2 Re α)). For light people this is the middle between
-# the old and the new resonance.
+# **Task 3.** \|D₀ + κs²α\| = \|D₀\| with real D₀ gives ω² = ω_B²/(1 + κ\|α\|²/(2 Re α)). For light people this
+# is the middle between the old and the new resonance.
 
 # %%
 def undamped(f):
@@ -112,9 +113,10 @@ alpha = body.apparent_mass(2j * np.pi * edge)
 assert np.isclose(edge, 2.0 / np.sqrt(1 + 75 / 2 / MODAL_MASS * abs(alpha)**2 / (2 * alpha.real)), rtol=1e-9)
 
 # %% [markdown]
-# **Task 4.** L tends to κm₀ + κ(c − 2ξω_B m₀)/s, so the right side is −(π/2) κ(c − 2ξω_B m₀)/(1 + κm₀). With an L that falls as
-# 1/s² it would be zero: as much harm as help, the waterbed of control. People push back in step with velocity, by
-# the dampers of their bodies; on balance they help, and the more so the more of them there are.
+# **Task 4.** L tends to κm₀ + κ(c − 2ξω_B m₀)/s, so the right side is −(π/2) κ(c − 2ξω_B m₀)/(1 + κm₀). With an
+# L that falls as 1/s² it would be zero: as much harm as help, the waterbed of control. People push back in step
+# with velocity, by the dampers of their bodies; on balance they help, and the more so the more of them there
+# are.
 
 # %%
 c, m0 = body.damping_coefficient, body.unsprung_mass
@@ -127,9 +129,9 @@ for n in (15, 75):
     print(f"{n} people: Bode's integral {by_sum:.4f} rad/s, by hand {by_hand:.4f} rad/s")
 
 # %% [markdown]
-# **Task 5.** Sensitivity compares frequency by frequency, and the empty bridge hardly moves at 1.86 Hz. The peaks compare
-# resonance with resonance. Who steps at 1.86 Hz meets more motion with 75 people than without; who is free to
-# step at the worst frequency meets a third.
+# **Task 5.** Sensitivity compares frequency by frequency, and the empty bridge hardly moves at 1.86 Hz. The
+# peaks compare resonance with resonance. Who steps at 1.86 Hz meets more motion with 75 people than without;
+# who is free to step at the worst frequency meets a third.
 
 # %%
 with_people, empty = (hsi.effective(one).peak for one in (occupied, bridge))
@@ -152,5 +154,5 @@ right.set(xlabel="Re L [-]", ylabel="Im L [-]", aspect="equal", xlim=(-4, 4), yl
 plt.show()
 
 # %% [markdown]
-# **Think on.** The unsprung mass of a person is small, but without it L would fall as 1/s. Is anything of the above
-# different for ``sprung_ratio=1``?
+# **Think on.** The unsprung mass of a person is small, but without it L would fall as 1/s. Is anything of the
+# above different for ``sprung_ratio=1``?
