@@ -20,7 +20,7 @@ mpl.use("Agg")
 BRIDGE = hsi.reference_bridge(frequency=2.0)
 PEOPLE = hsi.Crowd(mass=[60.0, 75.0, 90.0], frequency=[2.9, 3.2, 3.6], damping=[0.25, 0.3, 0.35])
 PLACES = np.array([12.0, 20.0, 33.0])
-DAMPER = hsi.Pedestrian(mass=250.0, frequency=1.95, damping=0.1, sprung_ratio=1.0)
+DAMPER = hsi.Absorber(mass=250.0, frequency=1.95, damping=0.1)
 OMEGA = 2 * np.pi * np.linspace(0.5, 6.0, 301)
 
 
@@ -155,7 +155,7 @@ def test_the_host_refuses_an_inerter_on_an_accelerance() -> None:
 # --- a nonlinear body -----------------------------------------------------------------------------
 
 
-def hardening(cubic: float, body: hsi.Pedestrian = DAMPER) -> ct.NonlinearIOSystem:
+def hardening(cubic: float, body: hsi.Absorber = DAMPER) -> ct.NonlinearIOSystem:
     """A sprung mass on k q + k₃ q³, where q is how far the deck is ahead of it."""
     m, c, k = body.sprung_mass, body.damping_coefficient, body.stiffness
 
@@ -321,6 +321,14 @@ def test_zeros_are_those_of_the_plain_matrices(n_modes: int, n: int, at: list[fl
     if len(at) <= n_modes:     # with more ports than modes the host's pencil is singular
         theirs = ct.StateSpace(occupied.A, occupied.B, occupied.C, occupied.D).zeros()
         assert distance(found, theirs) < 1e-3
+
+
+def test_absorbers_of_the_bridge_have_zeros_too() -> None:
+    """An absorber's own frequency, undamped: it holds the deck still there."""
+    bridge = BRIDGE.with_absorbers(hsi.Absorber(mass=250.0, frequency=1.9, damping=0.0), at=[25.0])
+    found = hsi.couple(bridge, PEOPLE, PLACES).zeros()
+    assert np.abs(found - 2j * np.pi * 1.9).min() < 1e-12
+    assert len(found) == 2 + 2 * 4
 
 
 @pytest.mark.parametrize("n", [0, 15, 225])
