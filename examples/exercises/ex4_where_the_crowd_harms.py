@@ -49,6 +49,7 @@ A controller that helps at one frequency harms at another; a crowd is no excepti
 # Hints
 # -----
 #
+# * ``hsi.Pedestrian().apparent_mass(s)`` is α, for an array of s as well.
 # * \|1 + L\|² = 1 is an equation with real D₀ = ω_B² − ω² if ξ = 0.
 # * For large s, α = m₀ + c/s + … with the damper c = 2ξ₁ω₁m₁ of the body.
 # * The sum must reach far: the integrand falls as 1/ω².

@@ -35,8 +35,8 @@ How many crowds it takes to know a percentile, and why an estimate that has come
 # 2. Rayleigh samples have q = √(−2 ln(1 − p)). In how many of 4000 studies with n = 200 does your interval hold
 #    it? What is the exact chance?
 # 3. How many Rayleigh trials are needed for ±5 %? Check the answer with ``hsi.monte_carlo``.
-# 4. A colleague stops as soon as the running estimate has changed by less than 1 % over the last 50 trials. In
-#    how many of 400 studies is it within ±5 % of q? Explain the share by the formula for sd(q̂).
+# 4. A colleague looks every 50 trials, and stops as soon as the estimate has changed by less than 1 % since the
+#    last look. In how many of 400 studies is it within ±5 % of q? Explain the share by the formula for sd(q̂).
 # 5. Use ``hsi.monte_carlo`` for the peak acceleration of a bridge that fifteen people cross.
 #
 # Hints
