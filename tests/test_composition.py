@@ -369,3 +369,19 @@ def test_step_response_lasts_until_the_bridge_rests(n: int) -> None:
     assert record.outputs[0] == pytest.approx(occupied.D[0, 0])     # a force meets the mass first
     assert (record.plot().axes[0, 0].get_ylabel(), record.output_labels) == ("a[0]", ["a[0]"])
     plt.close("all")
+
+
+def test_a_measured_bridge_in_the_hosts_plots() -> None:
+    """Of one force and one acceleration, the singular value is the modulus."""
+    response = ct.frequency_response(BRIDGE.ss(at=[25.0])["a[0]", "F[0]"], OMEGA)
+    measured = hsi.MeasuredBridge(response=response, positions=[25.0], modal_mass=25e3)
+    occupied = hsi.couple(measured, PEOPLE, [25.0] * 3)
+    expected = np.abs(hsi.couple(BRIDGE, PEOPLE, [25.0] * 3)(1j * OMEGA))
+    np.testing.assert_allclose(ct.singular_values_response(occupied).frdata[0, 0], expected, rtol=1e-9)
+    plots = ct.singular_values_response(occupied).plot(), ct.bode_plot(occupied)
+    for plot in plots:
+        omega, size = np.ravel(plot.lines)[0][0].get_data()
+        np.testing.assert_allclose(omega, OMEGA)
+        np.testing.assert_allclose(size, expected, rtol=1e-9)
+    assert ct.nyquist_plot(occupied).axes.size == 1
+    plt.close("all")
