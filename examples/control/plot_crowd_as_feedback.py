@@ -2,8 +2,8 @@
 The crowd as a feedback loop
 ============================
 
-Three roads to one system, a bridge with three people who stand on it: the host's ``feedback`` by hand, one call, and the
-named blocks that this call can be taken apart into. And what the loop does to the resonance.
+Three roads to one system, a bridge with three people who stand on it: the host's ``feedback`` by hand, one
+call, and the named blocks that this call can be taken apart into. And what the loop does to the resonance.
 """
 
 import control as ct
