@@ -89,7 +89,7 @@ def test_example_at_the_top_of_the_module_runs(written):
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    ("seeed = 1", r"line 1, seeed: key must be one of 'bridge', 'traffic', 'force', 'seed', got 'seeed'; correct"),
+    ("seeed = 1", r"line 1, seeed: key must be one of 'bridge', 'traffic', 'force', 'absorbers', 'seed', got 'seeed'"),
     ("seed = 1\n\n[brigde]\nkind = 1", r"line 3, brigde: key must be one of .*, got 'brigde'"),
     ("bridge = 3", r"line 1, bridge: bridge must be a table, got 3; write it like \[name\]"),
     ("[[bridge]]\nkind = 'beam'", r"line 1, bridge: bridge must be a table, got \[\{"),
@@ -118,7 +118,8 @@ def test_example_at_the_top_of_the_module_runs(written):
     ("[traffic]\ndensity = 5.4", r"\[traffic\] density: density must lie in \(0, 5.4\), got 5.4"),
     ("[traffic]\ndensity = [0.2, nan]", r"\[traffic\] density: density must lie in \(0, 5.4\), got nan"),
     ("[traffic]\ndensity = []", r"density must be a number or a list of numbers, got \[\]"),
-    ("[traffic]\ndensity = 1\npersons = 15", r"either a density or a number of persons, got density=1 and persons=15"),
+    ("[traffic]\ndensity = 1\npersons = 15",
+     r"line 3, \[traffic\] persons: a flow must have one of density, persons, classes, got density and persons;"),
     ("[traffic]\npersons = 1.5", r"line 2, \[traffic\] persons: persons must be a whole number or a list of them"),
     ("[traffic]\ndensity = 0.001", r"density must put at least one person on the deck of 150 m², got 0.001 persons/m²"),
     ("[traffic]\nspeed = -1.0", r"line 2, \[traffic\] speed: speed must lie in \(0, 10\], got -1; give m/s"),

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from hsictrl import plots
 from hsictrl._progress import progress
-from hsictrl.assessment import Assessment, PeakTrial
+from hsictrl.assessment import Assessment
 from hsictrl.cli.crossing import Crossing
 from hsictrl.cli.description import Description
 from hsictrl.coupling import OccupiedBridge
 from hsictrl.resonance import effective, frf
-from hsictrl.study import Estimates, trial_rng
+from hsictrl.study import Estimates
 
 BAND, LINES = (0.5, 1.5), 2001   # of the empty bridge's frequency
 MULTIPLES = 4                    # of the step frequency, marked on a spectrum
@@ -29,8 +29,7 @@ PANEL_TITLES: dict[str, Callable[[Any], str]] = {
 
 def draw(path: Path, found: Assessment, case: Description) -> None:
     """Draw one assessment, with the frequency responses and histories of its first trial, into a file."""
-    trials = [PeakTrial(model=model, bridge=found.bridge, flow=found.flow, force=case.force) for model in ("MF", "PMC")]
-    first = [trial.prediction(trial_rng(case.seed, 0)) for trial in trials]
+    first = [found.prediction(model) for model in ("MF", "PMC")]
     systems = [cast(OccupiedBridge, one.system) for one in first]     # neither model is MC
     plot = plots.assessment_figure(
         frfs=[_frf(system) for system in systems], effective=[effective(system) for system in systems],

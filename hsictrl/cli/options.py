@@ -24,6 +24,8 @@ Densities = Annotated[list[float] | None, typer.Option(
                                         "[default: 0.2, 0.5, 0.8, 1.0, 1.5].")]
 Density = Annotated[list[float] | None, typer.Option(
     "--density", metavar="PER_M2", help="Persons/m², in place of FILE's [default: 1.0].")]
+Mode = Annotated[int, typer.Option(
+    metavar="INDEX", help="Mode that is brought into resonance, counted from 0.")]
 Percentile = Annotated[float, typer.Option(
     metavar="PERCENT", help="Percentile of the peak acceleration that is the design value.")]
 Tolerance = Annotated[float, typer.Option(

@@ -100,7 +100,7 @@ class Study:
         Returns
         -------
         PeaksTrial or JointTrial
-            The latter if a model is among them for which bridges share nothing.
+            The latter if a model, or an absorber, is among them for which bridges share nothing.
 
         Examples
         --------
@@ -110,7 +110,7 @@ class Study:
         0.5
         """
         bridges, flow, walking = self.bridges(frequency), self.flows[density], self.forces[force]
-        if {*self.model} <= {*SHARED_MODELS}:
+        if {*self.model} <= {*SHARED_MODELS} and not self.case.bridge.absorbers:
             return PeaksTrial(models=self.model, bridges=bridges, flow=flow, force=walking)
         return JointTrial([PeakTrial(model=model, bridge=bridge, flow=flow, force=walking)
                            for model in self.model for bridge in bridges])

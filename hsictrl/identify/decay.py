@@ -14,6 +14,7 @@ from scipy.stats import t as student
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.identify.extremes import extremes
+from hsictrl.identify.reading import signals
 
 FEWEST = 3              # two extremes give a slope and no scatter
 CONFIDENCE = 0.95
@@ -296,23 +297,7 @@ def _band(highest: float, lowest: float) -> tuple[float, float]:
 def _read(record: ct.TimeResponseData | ArrayLike, timepts: ArrayLike | None, output: int) -> tuple[Array, Array]:
     """Times and the one signal of a record."""
     index = check.whole("output", output, least=0, remedy="count from 0")
-    given, times = _parts(record, timepts)
-    outputs = check.numbers("record", given, remedy="cut or fill what was not measured")
-    time = check.even_times("times of a record", times)
-    rows = np.atleast_2d(outputs)
-    if rows.ndim > 2 or rows.shape[-1] != len(time):
-        raise ValueError(f"record must hold one value per output and time, got shape {outputs.shape} for {len(time)} "
-                         "times; give one trace, and all its times")
+    time, rows = signals(record, timepts)
     if index >= len(rows):
         raise ValueError(f"output must be below {len(rows)}, got {index}; the record has no more")
     return time, rows[index]
-
-
-def _parts(record: ct.TimeResponseData | ArrayLike, timepts: ArrayLike | None) -> tuple[ArrayLike, ArrayLike]:
-    if isinstance(record, ct.TimeResponseData):
-        if timepts is not None:
-            raise TypeError("timepts must go with an array, got them with a TimeResponseData; leave them out")
-        return record.outputs, record.time
-    if timepts is None:
-        raise TypeError(f"timepts must go with an array, got none with a {type(record).__name__}; give seconds")
-    return record, timepts
