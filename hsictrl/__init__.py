@@ -4,6 +4,7 @@ A bridge is a set of modes; a walker is a sprung body that pushes back on the de
 loop around the bridge. Van Nimmen, Lombaert, De Roeck & Van den Broeck (2017) is implemented throughout.
 """
 
+from hsictrl import plots as plots
 from hsictrl.absorber import Absorber
 from hsictrl.assessment import Assessment, GuideCase, assess, guide_cases, guide_value, study_effective
 from hsictrl.bridge import (
