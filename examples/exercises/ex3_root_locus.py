@@ -42,6 +42,7 @@ The crowd as a feedback gain that grows person by person: where the poles of the
 #    difference.
 # 4. Draw the loci for 0 to 225 people on bridges of 2, 3.5 and 4 Hz. On the one of 3.5 Hz: for which N is the
 #    least damped pole damped the most? What changes there?
+# 5. Get the same loci from ``hsi.root_locus``.
 #
 # Hints
 # -----
@@ -49,6 +50,7 @@ The crowd as a feedback gain that grows person by person: where the poles of the
 # * ``np.polymul``, ``np.polyadd`` and ``np.roots`` do it; four coefficients can't go wrong, four hundred would.
 # * Branches end in the zeros of the open loop. There the bodies' force is all that counts.
 # * Differentiate the characteristic equation with respect to κ at κ = 0.
+# * People at the quarter points count by φ² = 1/2, like a crowd that is spread.
 #
 # Solution
 # --------
@@ -144,5 +146,13 @@ ax.legend(title="× nobody", markerscale=2, frameon=False)
 plt.show()
 
 # %% [markdown]
+# **Task 5.** The branches of ``hsi.root_locus`` are sorted by continuity, those of the bridge first; the host's
+# own ``ct.root_locus_plot`` takes the poles of a crowd through one large polynomial and loses them.
+
+# %%
+ready = hsi.root_locus(bridge, body, np.full(225, 12.5)).poles[:, :4]
+assert all(np.abs(np.subtract.outer(loci[3.5][n], ready[n])).min(axis=1).max() < 1e-8 for n in range(1, 226))
+
+# %% [markdown]
 # **Think on.** Draw the locus over the damping of the bodies instead. Which damping would a body need on the
-# 3.5 Hz bridge?
+# 3.5 Hz bridge? ``hsi.root_locus(..., parameter="damping", values=...)`` shows it.

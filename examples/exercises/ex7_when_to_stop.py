@@ -120,7 +120,7 @@ print(f"calm after {looks[stop].mean():.0f} trials, and right in {right:.0%} of 
 
 # %% [markdown]
 # **Task 5.** Trial i of a study draws from a stream of its own, so that the answer depends on the seed alone,
-# not on who computes it. We ask for ±15 % to be quick.
+# not on who computes it. We ask for ±20 % to be quick.
 
 # %%
 bridge, flow = hsi.reference_bridge(frequency=2.0), hsi.CrowdFlow(persons=15)
@@ -131,7 +131,7 @@ def trial(rng):
     return hsi.predict("MF", bridge, hsi.tune("MF", bridge, traffic)).peak_acceleration
 
 
-study = hsi.monte_carlo(trial, rule=hsi.PercentileRule(tolerance=0.15))
+study = hsi.monte_carlo(trial, rule=hsi.PercentileRule(tolerance=0.2))
 assert study.converged
 assert np.allclose(study.interval, interval(np.sort(study.samples)))
 print(f"a₉₅ = {study.estimate:.2f} m/s² after {study.n_trials} trials: {study.reason}")
