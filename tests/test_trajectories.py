@@ -111,6 +111,14 @@ def test_stays_are_found_however_often_rounding_meets_an_edge() -> None:
         assert all(np.all(BRIDGE.carries(one(one.times))) for one in stays)
 
 
+def test_whoever_ends_a_rounding_error_beyond_the_deck_has_walked_to_its_end() -> None:
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        times, x = np.cumsum(rng.uniform(0.2, 1.0, 5)), np.append(rng.uniform(0.01, 1.5, 4), -1e-17)
+        [stay] = hsi.Trajectory(times, x).stays_on(BRIDGE)
+        assert (stay.arrival, stay.departure) == (times[0], pytest.approx(times[-1], rel=1e-9))
+
+
 def test_speed_is_how_fast_a_person_walks() -> None:
     """At 1.5 m/s, with a rest of a third of the time and a sway of 5 cm that a second step undoes."""
     times = np.arange(0.0, 60.0, 0.1)
