@@ -12,7 +12,7 @@ from second_road import appendix_a, dense, on_coordinate, peaks, sines, transfer
 import hsictrl as hsi
 from hsictrl.cli.description import read_description
 from hsictrl.cli.study import read_study
-from hsictrl.prediction import tuned_peaks
+from hsictrl.prediction import models, tuned_peaks
 
 RATIOS = (0.005, 0.02, 0.1, 0.5)
 DAMPINGS = (0.0, 0.01, 0.0857, 0.3, 0.7, 0.999)
@@ -185,6 +185,16 @@ def test_the_models_have_it(model, standing):
     assert np.max(np.abs(error)) < 2e-3 * np.max(np.abs(expected))
 
 
+def test_what_is_left_of_a_vibration_dies_as_its_slowest_pole():
+    """Where two peaks share the motion, ξ_eff is twice the damping of either pole."""
+    bridge, weak = undamped(), hsi.Absorber(mass=500.0, frequency=1.96, damping=0.01)
+    system = hsi.couple(bridge.with_absorbers(weak, at=[25.0]))
+    slowest = -max(dense(bridge, [weak], [25.0]).poles().real)
+    assert models._slowest_decay(system, models._resonances(system)) == pytest.approx(slowest, rel=1e-9)
+    by_the_peak = hsi.effective(system)
+    assert by_the_peak.damping * 2 * np.pi * by_the_peak.frequency > 1.5 * slowest
+
+
 def test_the_steady_state_has_it():
     bridge = hsi.reference_bridge(frequency=2.0, damping=0.0).with_absorbers(TMD, at=[25.0])
     traffic = hsi.Traffic([walker(step_frequency=2.0)], window=(4.0, 6.0))       # stands at midspan
@@ -240,13 +250,15 @@ def test_an_assessment_has_it_and_says_that_the_guide_has_not():
 
 @pytest.mark.parametrize("model", ["MF", "PMC"])
 def test_the_spectral_estimate_has_it(model):
-    """An absorber without mass changes nothing, one of 2 % lowers the response."""
+    """An absorber without mass changes nothing, one of 2 % lowers the response; steps meet the highest peak."""
     bridge, flow = hsi.reference_bridge(frequency=2.0, damping=0.005), hsi.CrowdFlow(density=0.5)
-    bare, nothing, damped = (hsi.spectral_estimate(model, one, flow).rms for one in (
+    bare, nothing, damped = (hsi.spectral_estimate(model, one, flow) for one in (
         bridge, bridge.with_absorbers(hsi.Absorber(mass=1e-6, frequency=1.95, damping=0.08), at=[25.0]),
         bridge.with_absorbers(TMD, at=[25.0])))
-    assert nothing == pytest.approx(bare, rel=1e-3)
-    assert damped < 0.9 * bare
+    assert nothing.rms == pytest.approx(bare.rms, rel=1e-3)
+    assert damped.rms < 0.9 * bare.rms
+    highest = peaks(dense(bridge, [TMD], [25.0]))[0][0] if model == "MF" else hsi.effective(damped.system).frequency
+    assert damped.step_frequency[0] == pytest.approx(highest, rel=1e-6)
 
 
 def test_a_bridge_with_absorbers_is_a_value():
