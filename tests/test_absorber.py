@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 from itertools import product
 
 import control as ct
@@ -136,6 +137,13 @@ def test_it_is_a_body_like_any_other():
     occupied, expected = hsi.couple(two_modes(), bodies, places), dense(two_modes(), bodies, places)
     omega = np.geomspace(1, 100, 50)
     np.testing.assert_allclose(occupied(1j * omega), expected(1j * omega), rtol=1e-9)
+
+
+def test_a_measured_bridge_takes_it_as_a_body():
+    bridge, hertz = hsi.reference_bridge(frequency=2.0), np.linspace(1.5, 2.5, 501)
+    measured = hsi.MeasuredBridge(response=hsi.frf(bridge, hertz), positions=[25.0], modal_mass=25e3)
+    found = hsi.couple(measured, TMD, [25.0]).frdata
+    np.testing.assert_allclose(found.ravel(), dense(bridge, [TMD], [25.0])(2j * np.pi * hertz), rtol=1e-9)
 
 
 def test_fixed_to_the_bridge_it_is_what_it_is_beside_the_crowd():
@@ -285,6 +293,9 @@ def test_a_bridge_with_absorbers_is_a_value():
     (lambda: undamped().with_absorbers([TMD], at=[10.0, 20.0]), ValueError,
      "absorbers and places must be as many, got 1 and 2; give one place"),
     (lambda: undamped().with_absorbers(500.0, at=[10.0]), TypeError, "absorbers must be of type list or tuple, got fl"),
+    (lambda: replace(undamped(), absorbers=TMD), TypeError, "absorbers must be of type list or tuple, got Absorber; use"),
+    (lambda: replace(undamped(), absorbers=[TMD]), TypeError, "absorbers must be of type tuple, got Absorber; use with"),
+    (lambda: replace(undamped(), absorbers=[(TMD,)]), ValueError, "absorbers must be pairs of a body and its place, got 1"),
     (lambda: undamped().with_absorbers([500.0], at=[10.0]), TypeError, "absorbers must be of type Body, got float"),
     (lambda: hsi.couple(undamped().with_absorbers(TMD, at=[10.0]), TMD, [60.0]), ValueError, r"positions\[0\] = \(60"),
     (lambda: tuned_peaks(["MF"], [undamped().with_absorbers(TMD, at=[25.0])], hsi.Traffic([walker()])), ValueError,
