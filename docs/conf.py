@@ -19,11 +19,12 @@ myst_heading_anchors = 3
 autosummary_generate = True
 numpydoc_show_class_members = False
 autodoc_typehints = "none"
+nitpicky = True
 html_math_renderer = "mathml"
 templates_path = ["_templates"]
 exclude_patterns = ["_build", "_templates"]
 
-GALLERIES = [name for name in ("paper", "exercises") if (HERE.parent / "examples" / name).is_dir()]
+GALLERIES = [name for name in ("paper", "control", "exercises") if (HERE.parent / "examples" / name).is_dir()]
 sphinx_gallery_conf = {
     "examples_dirs": [f"../examples/{name}" for name in GALLERIES],
     "gallery_dirs": [f"gallery/{name}" for name in GALLERIES],
@@ -40,5 +41,6 @@ sphinx_gallery_conf = {
 
 html_theme = "furo"
 html_title = "hsictrl"
+pygments_dark_style = "github-dark"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]

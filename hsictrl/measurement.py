@@ -6,6 +6,7 @@ from typing import Any
 
 import control as ct
 import numpy as np
+from scipy.fft import next_fast_len
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -15,6 +16,7 @@ from hsictrl.stepper import simulate
 
 DURATION = 600.0        # of a record under ambient forces [s]
 FORCE = 100.0           # of ambient excitation [N]
+TIME_CONSTANTS = 5.0    # 1/(ξω) of the slowest mode, after which a vibration is forgotten
 
 
 def virtual_measurement(
@@ -56,8 +58,8 @@ def virtual_measurement(
 
     Notes
     -----
-    The ambient response is exact: the spectrum of the forces times the condensed frequency response, over a period of
-    twice the record, of which half is kept, so that its ends know nothing of each other.
+    The ambient response is exact: the spectrum of the forces times the condensed frequency response. Forces repeat
+    after twice the record and the time in which the empty bridge forgets, so that its ends know nothing of each other.
 
     Examples
     --------
@@ -65,6 +67,7 @@ def virtual_measurement(
     >>> occupied = hsi.couple(hsi.reference_bridge(), hsi.Pedestrian(), np.linspace(0, 50, 15))
     >>> record = virtual_measurement(occupied, sense_at=[12.5, 25.0, 37.5], rng=np.random.default_rng(1))
     >>> record.outputs.shape, record.outputs.std(axis=1).round(4)
+    ((3, 30000), array([0.0085, 0.012 , 0.0085]))
     """
     check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
     check.instance("system", system, (OccupiedBridge, MovingCrowd), "make it with couple, or with moving_crowd")
@@ -72,8 +75,8 @@ def virtual_measurement(
     spread = check.number("noise", noise, least=0, remedy="give m/s², 0 for none")
     if isinstance(system, MovingCrowd):
         if force is not None:
-            raise TypeError(f"force must go with people who stand, got {force!r} N with a moving crowd, which drives the "
-                            "bridge itself; leave it out")
+            raise TypeError(f"force must go with people who stand, got {force!r} N with a moving crowd, which drives "
+                            "the bridge itself; leave it out")
         time = _times(system, duration, rate)
         exact = np.atleast_2d(simulate(system, time, sense_at=sense_at).response.outputs)
     else:
@@ -85,14 +88,16 @@ def virtual_measurement(
 
 
 def _ambient(occupied: OccupiedBridge, count: int, rate: float, force: float, rng: np.random.Generator) -> Array:
-    """One half of a periodic steady state under white forces, shape (p, count) [m/s²]."""
+    """Less than half of a periodic steady state under white forces, shape (p, count) [m/s²]."""
     if np.any(occupied.bridge.damping == 0):
         raise ValueError("every mode must have damping for ambient forces to end in a steady state, got 0 %; give the "
                          "bridge a damping ratio above 0")
     size = check.number("force", force, above=0, remedy="give the standard deviation in N")
-    spectra = np.fft.rfft(size * rng.standard_normal((occupied.ninputs, 2 * count)))
-    response = occupied.horner(2j * np.pi * np.fft.rfftfreq(2 * count, 1 / rate))
-    return np.fft.irfft(np.einsum("pfw,fw->pw", response, spectra), 2 * count)[:, :count]
+    memory = TIME_CONSTANTS / np.min(occupied.bridge.damping * occupied.bridge.omega)
+    period = next_fast_len(2 * (count + int(memory * rate)), real=True)
+    spectra = np.fft.rfft(size * rng.standard_normal((occupied.ninputs, period)))
+    response = occupied.horner(2j * np.pi * np.fft.rfftfreq(period, 1 / rate))
+    return np.fft.irfft(np.einsum("pfw,fw->pw", response, spectra), period)[:, :count]
 
 
 def _sensed(occupied: OccupiedBridge, sense_at: Any) -> OccupiedBridge:

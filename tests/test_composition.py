@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import re
-from pathlib import Path
-from typing import Any
 
 import control as ct
 import matplotlib as mpl
@@ -23,7 +20,7 @@ mpl.use("Agg")
 BRIDGE = hsi.reference_bridge(frequency=2.0)
 PEOPLE = hsi.Crowd(mass=[60.0, 75.0, 90.0], frequency=[2.9, 3.2, 3.6], damping=[0.25, 0.3, 0.35])
 PLACES = np.array([12.0, 20.0, 33.0])
-DAMPER = hsi.Pedestrian(mass=250.0, frequency=1.95, damping=0.1, sprung_ratio=1.0)
+DAMPER = hsi.Absorber(mass=250.0, frequency=1.95, damping=0.1)
 OMEGA = 2 * np.pi * np.linspace(0.5, 6.0, 301)
 
 
@@ -158,7 +155,7 @@ def test_the_host_refuses_an_inerter_on_an_accelerance() -> None:
 # --- a nonlinear body -----------------------------------------------------------------------------
 
 
-def hardening(cubic: float, body: hsi.Pedestrian = DAMPER) -> ct.NonlinearIOSystem:
+def hardening(cubic: float, body: hsi.Absorber = DAMPER) -> ct.NonlinearIOSystem:
     """A sprung mass on k q + k₃ q³, where q is how far the deck is ahead of it."""
     m, c, k = body.sprung_mass, body.damping_coefficient, body.stiffness
 
@@ -326,6 +323,14 @@ def test_zeros_are_those_of_the_plain_matrices(n_modes: int, n: int, at: list[fl
         assert distance(found, theirs) < 1e-3
 
 
+def test_absorbers_of_the_bridge_have_zeros_too() -> None:
+    """An absorber's own frequency, undamped: it holds the deck still there."""
+    bridge = BRIDGE.with_absorbers(hsi.Absorber(mass=250.0, frequency=1.9, damping=0.0), at=[25.0])
+    found = hsi.couple(bridge, PEOPLE, PLACES).zeros()
+    assert np.abs(found - 2j * np.pi * 1.9).min() < 1e-12
+    assert len(found) == 2 + 2 * 4
+
+
 @pytest.mark.parametrize("n", [0, 15, 225])
 def test_default_frequencies_hold_the_peak_and_little_else(n: int) -> None:
     """A decade beyond the slowest and the fastest pole, not down to the rounding of zeros at the origin."""
@@ -366,19 +371,17 @@ def test_step_response_lasts_until_the_bridge_rests(n: int) -> None:
     plt.close("all")
 
 
-# --- the page -------------------------------------------------------------------------------------
-
-
-def test_the_recipes_run() -> None:
-    """Every piece of code on the page, one after the other, and what the page says of the results."""
-    page = (Path(__file__).parent.parent / "docs" / "compose.md").read_text()
-    recipes = dict[str, Any]()
-    for piece in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
-        exec(piece, recipes)
+def test_a_measured_bridge_in_the_hosts_plots() -> None:
+    """Of one force and one acceleration, the singular value is the modulus."""
+    response = ct.frequency_response(BRIDGE.ss(at=[25.0])["a[0]", "F[0]"], OMEGA)
+    measured = hsi.MeasuredBridge(response=response, positions=[25.0], modal_mass=25e3)
+    occupied = hsi.couple(measured, PEOPLE, [25.0] * 3)
+    expected = np.abs(hsi.couple(BRIDGE, PEOPLE, [25.0] * 3)(1j * OMEGA))
+    np.testing.assert_allclose(ct.singular_values_response(occupied).frdata[0, 0], expected, rtol=1e-9)
+    plots = ct.singular_values_response(occupied).plot(), ct.bode_plot(occupied)
+    for plot in plots:
+        omega, size = np.ravel(plot.lines)[0][0].get_data()
+        np.testing.assert_allclose(omega, OMEGA)
+        np.testing.assert_allclose(size, expected, rtol=1e-9)
+    assert ct.nyquist_plot(occupied).axes.size == 1
     plt.close("all")
-    closed = recipes["closed"]
-    assert distance(ct.poles(closed), recipes["designed"]) < 1e-8 * np.abs(recipes["designed"]).max()
-    frequency, damping, _ = ct.damp(recipes["loaded"], doprint=False)
-    ratio = np.sqrt(25 / 27)
-    np.testing.assert_allclose([frequency[0], damping[0]], [4 * np.pi * ratio, 0.005 * ratio], rtol=1e-9)
-    assert np.abs(recipes["record"].outputs).max() > 0.01

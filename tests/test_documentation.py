@@ -1,8 +1,10 @@
-"""The Python blocks of the pages run as they stand, and print what is shown below them."""
+"""Python blocks of the pages run as they stand, and print what is shown below them; faulty links are found."""
 
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import chdir, redirect_stdout
 from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, OutputChecker
@@ -50,3 +52,18 @@ def test_blocks_run_and_print_what_is_shown(page: Path, tmp_path: Path) -> None:
             same = OutputChecker().check_output(shown, printed, NORMALIZE_WHITESPACE | ELLIPSIS)
             assert not shown or same, f"{source.strip()}\n\nprints\n{printed}\nand the page shows\n{shown}"
     plt.close("all")
+
+
+@pytest.mark.parametrize(("body", "fault"), [
+    ('<a href="missing.html">x</a>', "missing.html: no such file"),
+    ('<a href="other.html#nowhere">x</a>', "other.html#nowhere: no such place on that page"),
+    ('<a href="#nowhere">x</a>', "#nowhere: no such place on that page"),
+    ('<img src="https://elsewhere.org/a.png">', "loads https://elsewhere.org/a.png"),
+    ('<code class="xref py py-func">frf</code>', "no target for a xref py py-func name"),
+    ('<a href="other.html#here">x</a> <a href="https://elsewhere.org">y</a>', None),
+])
+def test_faulty_links_are_found(body: str, fault: str | None, tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text(body, encoding="utf-8")
+    (tmp_path / "other.html").write_text('<p id="here">', encoding="utf-8")
+    done = subprocess.run([sys.executable, ROOT / "docs" / "links.py", tmp_path], capture_output=True, text=True)
+    assert (done.returncode, f"index.html: {fault}" in done.stdout) == ((1, True) if fault else (0, False)), done.stdout

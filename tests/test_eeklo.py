@@ -255,8 +255,8 @@ def test_figure_7_is_drawn_from_its_rows(rows: Rows) -> None:
 
 
 def test_plots_refuse_what_they_cannot_draw() -> None:
-    crowd = {"persons": [3, 9], "frequency": [[2, 2]] * 3, "damping": [[0.1, 0.1]] * 3, "hatched": False}
-    with pytest.raises(ValueError, match=r"panels\['a'\]\['b'\] must hold .*, got no 'hatched'; give all"):
+    crowd = {"persons": [3, 9], "frequency": [[2, 2]] * 3, "damping": [[0.1, 0.1]] * 3, "look": "filled"}
+    with pytest.raises(ValueError, match=r"panels\['a'\]\['b'\] must hold .*, got no 'look'; give all"):
         plots.bands_plot({"a": {"b": {key: crowd[key] for key in ("persons", "frequency", "damping")}}})
     with pytest.raises(ValueError, match=r"\['damping'\] must have shape \(3, 2\), got \(2, 2\); give mean, 5 % and"):
         plots.bands_plot({"a": {"b": {**crowd, "damping": [[0.1, 0.1]] * 2}}})

@@ -16,6 +16,7 @@ class Claims(SphinxDirective):
     """All claims, by the part of the paper that they are about."""
 
     def run(self) -> list[nodes.Node]:
+        self.env.note_reread()      # results may have changed while the page has not
         rows = compute("claims").rows
         return [nodes.paragraph("", counted(rows)), *(
             node for where, group in groupby(rows, key=lambda row: row["where"])

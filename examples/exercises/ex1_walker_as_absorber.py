@@ -6,28 +6,29 @@ What one person who stands on a bridge does to its frequency and its damping, by
 """
 
 # %% [markdown]
-# **Goal.** You can say from the apparent mass of a body what it does to a lightly damped mode, and at which frequency a
-# walker damps best.
+# **Goal.** You can say from the apparent mass of a body what it does to a lightly damped mode, and at which
+# frequency a walker damps best.
 #
 # Theory
 # ------
 #
-# A person is a mass m₀ on the deck and a mass m₁ on a spring and a damper (section 2.2). The body's equation of motion,
-# (A.3), gives the force that moves the contact point with acceleration a. Their ratio is the *apparent mass*:
+# A person is a mass m₀ on the deck and a mass m₁ on a spring and a damper (section 2.2). The body's equation of
+# motion, (A.3), gives the force that moves the contact point with acceleration a. Their ratio is the *apparent
+# mass*:
 #
 # .. math::
 #
 #     \alpha(s) = m_0 + m_1 \frac{2\xi_1\omega_1 s + \omega_1^2}{s^2 + 2\xi_1\omega_1 s + \omega_1^2}
 #
-# The deck feels the force −α a. One mode with modal mass m, and a person where its shape is φ (one at the antinode),
-# have the dynamic stiffness
+# The deck feels the force −α a. One mode with modal mass m, and a person where its shape is φ (one at the
+# antinode), have the dynamic stiffness
 #
 # .. math::
 #
 #     D(s) = m (s^2 + 2\xi\omega s + \omega^2) + \phi^2 s^2 \alpha(s)
 #
-# On the axis s = iω the real part of α acts as mass. A dashpot c would add iωc to D; the imaginary part of α adds
-# −ω² i Im α, so it is a dashpot of −ω Im α. On an undamped bridge, to first order in α/m,
+# On the axis s = iω the real part of α acts as mass. A dashpot c would add iωc to D; the imaginary part of α
+# adds −ω² i Im α, so it is a dashpot of −ω Im α. On an undamped bridge, to first order in α/m,
 #
 # .. math::
 #
@@ -37,14 +38,14 @@ What one person who stands on a bridge does to its frequency and its damping, by
 # Tasks
 # -----
 #
-# 1. Draw Re α and Im α of ``hsi.Pedestrian()`` from 0 to 8 Hz. Give both by hand at 0 Hz, at the body's own frequency,
-#    and for very high frequencies, and check them.
-# 2. Put one person on the antinode of undamped reference bridges of 1 to 6 Hz. Compare the true damping, that of the pole,
-#    ``hsi.effective(..., method="pole")``, with the formula. Show that the error is of second order: it falls by four if the
-#    body's mass is halved.
+# 1. Draw Re α and Im α of ``hsi.Pedestrian()`` from 0 to 8 Hz. Give both by hand at 0 Hz, at the body's own
+#    frequency, and for very high frequencies, and check them.
+# 2. Put one person on the antinode of undamped reference bridges of 1 to 6 Hz. Compare the true damping, that
+#    of the pole, ``hsi.effective(..., method="pole")``, with the formula. Show that the error is of second
+#    order: it falls by four if the body's mass is halved.
 # 3. At which frequency of the bridge does a walker damp best? Set the derivative of Im α to zero by hand.
-# 4. N equal people stand at x = (i + ½)L/N on a half sine. How many on the antinode do they replace? Check it on the
-#    frequency response.
+# 4. N equal people stand at x = (i + ½)L/N on a half sine. How many on the antinode do they replace? Check it
+#    on the frequency response.
 #
 # Hints
 # -----
@@ -56,7 +57,8 @@ What one person who stands on a bridge does to its frequency and its damping, by
 # Solution
 # --------
 #
-# **Task 1.** The whole mass at 0 Hz, the unsprung mass far above, and m₀ + m₁ − i m₁/(2ξ₁) in between: 70 − 111i kg.
+# **Task 1.** The whole mass at 0 Hz, the unsprung mass far above, and m₀ + m₁ − i m₁/(2ξ₁) in between: 70 −
+# 111i kg.
 
 # %%
 import matplotlib.pyplot as plt
@@ -72,7 +74,8 @@ for frequency, mass in expected.items():
     assert np.isclose(body.apparent_mass(2j * np.pi * frequency), mass, atol=1e-6)
 
 # %% [markdown]
-# **Task 2.** The formula reads α where the pole of the empty bridge is, so what it leaves out is of second order in the mass.
+# **Task 2.** The formula reads α where the pole of the empty bridge is, so what it leaves out is of second
+# order in the mass.
 
 # %%
 def damping(bridge, one):
@@ -92,7 +95,8 @@ errors = [damping(bridges[10], one) - first_order(bridges[10], one) for one in (
 assert abs(errors[0] / errors[1] - 4) < 0.1
 
 # %% [markdown]
-# **Task 3.** The derivative vanishes where r⁴ + (2 − 4ξ₁²) r² = 3: at 3.40 Hz, a little above the body's own frequency.
+# **Task 3.** The derivative vanishes where r⁴ + (2 − 4ξ₁²) r² = 3: at 3.40 Hz, a little above the body's own
+# frequency.
 
 # %%
 half = 1 - 2 * xi1**2
@@ -103,8 +107,8 @@ assert abs(hertz[np.argmin(alpha.imag)] - best) < 1e-3
 print(f"a walker damps best at {best:.3f} Hz: {100 * guess.max():.2f} % on a bridge of 25 t")
 
 # %% [markdown]
-# **Task 4.** The squares of the sines add up to N/2: fifteen people spread over the deck are seven and a half at the
-# antinode. Equal bodies on one mode merge exactly.
+# **Task 4.** The squares of the sines add up to N/2: fifteen people spread over the deck are seven and a half
+# at the antinode. Equal bodies on one mode merge exactly.
 
 # %%
 x = (np.arange(15) + 0.5) * 50 / 15
@@ -128,5 +132,6 @@ below.legend(frameon=False)
 plt.show()
 
 # %% [markdown]
-# **Think on.** Below 2 Hz people are little but mass, above 5 Hz they are isolated by their own springs and hardly there.
-# Im α is never positive: a standing person takes energy at every frequency, so a standing crowd can't make a bridge unstable.
+# **Think on.** Below 2 Hz people are little but mass, above 5 Hz they are isolated by their own springs and
+# hardly there. Im α is never positive: a standing person takes energy at every frequency, so a standing crowd
+# can't make a bridge unstable.

@@ -13,8 +13,8 @@ Peak, pole and half-power answer three questions; where people are on the bridge
 #
 # Three ways from a system to one number, all of which ``hsi.effective`` offers:
 #
-# *Peak* (eq. 17, the paper's): the damping of a mode with the modal mass m_B of the *empty* bridge whose accelerance
-# has the same peak.
+# *Peak* (eq. 17, the paper's): the damping of a mode with the modal mass m_B of the *empty* bridge whose
+# accelerance has the same peak.
 #
 # .. math::
 #
@@ -43,7 +43,8 @@ Peak, pole and half-power answer three questions; where people are on the bridge
 #
 # 1. For the empty bridge, find all three in closed form, without assuming that ξ_B is small. Check them with
 #    ``hsi.effective`` for ξ_B of 0.5, 5 and 20 %.
-# 2. Load the bridge with 2.5 t of sandbags at the antinode: bodies that are all but rigid. What does each definition say?
+# 2. Load the bridge with 2.5 t of sandbags at the antinode: bodies that are all but rigid. What does each
+#    definition say?
 # 3. Put 75 walkers on bridges of 1 to 6 Hz and draw all three. Where do they part, and why?
 # 4. Somebody measures a free decay. Which of the three do they get? Let the occupied bridge ring and try
 #    ``hsi.free_decay``.
@@ -59,8 +60,8 @@ Peak, pole and half-power answer three questions; where people are on the bridge
 # Solution
 # --------
 #
-# **Task 1.** The parabola has its minimum 4ξ²(1 − ξ²) at u = 1 − 2ξ², and twice that at u = 1 − 2ξ² ± 2ξ√(1 − ξ²). So the
-# peak says ξ√(1 − ξ²), the pole ξ, and half-power
+# **Task 1.** The parabola has its minimum 4ξ²(1 − ξ²) at u = 1 − 2ξ², and twice that at u = 1 − 2ξ² ± 2ξ√(1 −
+# ξ²). So the peak says ξ√(1 − ξ²), the pole ξ, and half-power
 
 # %%
 import control as ct
@@ -85,9 +86,9 @@ for xi in (0.005, 0.05, 0.2):
     print(f"ξ_B {xi:.1%}:", ", ".join(f"{m} {x:.3%}" for m, x in zip(METHODS, found, strict=True)))
 
 # %% [markdown]
-# **Task 2.** Nothing takes more energy than before. The pole's damping falls by √(m/m'), as that of any heavier mode does.
-# The peak's *rises* by √(m'/m): the heavier bridge answers less, and (17) books that as damping. Half-power follows the
-# pole.
+# **Task 2.** Nothing takes more energy than before. The pole's damping falls by √(m/m'), as that of any heavier
+# mode does. The peak's *rises* by √(m'/m): the heavier bridge answers less, and (17) books that as damping.
+# Half-power follows the pole.
 
 # %%
 sand = hsi.Pedestrian(mass=2500.0, sprung_ratio=1e-9)
@@ -100,9 +101,9 @@ assert np.isclose(halfpower, by_hand(pole)[2], rtol=1e-6)
 print(f"sand: peak {peak:.3%}, pole {pole:.3%}, half-power {halfpower:.3%}")
 
 # %% [markdown]
-# **Task 3.** Below 3 Hz people add mass, and the peak lies above the other two, as with sand. Between 3 and 4 Hz bridge and
-# bodies share two modes: at 3.6 Hz the pole with the larger part in the response changes, and half-power reads the width
-# of both. Far above, all agree.
+# **Task 3.** Below 3 Hz people add mass, and the peak lies above the other two, as with sand. Between 3 and 4
+# Hz bridge and bodies share two modes: at 3.6 Hz the pole with the larger part in the response changes, and
+# half-power reads the width of both. Far above, all agree.
 
 # %%
 x = (np.arange(75) + 0.5) * 50 / 75
@@ -135,5 +136,5 @@ ax.legend(title="75 walkers, 0.5 %", frameon=False)
 plt.show()
 
 # %% [markdown]
-# **Think on.** The paper compares its effective damping with measured ones (section 3.4). By which definition were they
-# measured, and does it matter at Eeklo's mass ratio?
+# **Think on.** The paper compares its effective damping with measured ones (section 3.4). By which definition
+# were they measured, and does it matter at Eeklo's mass ratio?

@@ -6,14 +6,14 @@ Why a crowd that walks may be replaced by one that stands, and what is lost.
 """
 
 # %% [markdown]
-# **Goal.** You can judge when the pseudo-moving crowd model (PMC) stands for the moving one (MC): by two time scales, and by
-# a sum of squares.
+# **Goal.** You can judge when the pseudo-moving crowd model (PMC) stands for the moving one (MC): by two time
+# scales, and by a sum of squares.
 #
 # Theory
 # ------
 #
-# In the moving crowd model (eqs. 5 to 8) the matrices depend on time, because walker k takes part in the mode with the
-# shape φ(x_k(t)). Equal bodies change the dynamic stiffness of a mode (exercise 1) by
+# In the moving crowd model (eqs. 5 to 8) the matrices depend on time, because walker k takes part in the mode
+# with the shape φ(x_k(t)). Equal bodies change the dynamic stiffness of a mode (exercise 1) by
 #
 # .. math::
 #
@@ -21,8 +21,8 @@ Why a crowd that walks may be replaced by one that stands, and what is lost.
 #
 # as long as φ changes little while a body forgets. It forgets in 1/(ξ₁ω₁), and φ = sin(πx/L) changes in L/(πv).
 #
-# How much Σ moves depends on who arrives when. For Poisson arrivals, N people on the deck on average, Campbell's theorem
-# gives mean and variance of a sum over the people at an instant:
+# How much Σ moves depends on who arrives when. For Poisson arrivals, N people on the deck on average,
+# Campbell's theorem gives mean and variance of a sum over the people at an instant:
 #
 # .. math::
 #
@@ -32,27 +32,29 @@ Why a crowd that walks may be replaced by one that stands, and what is lost.
 # Tasks
 # -----
 #
-# 1. One walker crosses the 3 Hz reference bridge. Draw the damping from instant to instant with ``hsi.effective_along`` (by
-#    the pole), and explain its shape.
+# 1. One walker crosses the 3 Hz reference bridge. Draw the damping from instant to instant with
+#    ``hsi.effective_along`` (by the pole), and explain its shape.
 # 2. Twenty people walk at equal distances of L/20. Find Σ(t). What does ``hsi.effective_along`` give?
-# 3. Let the bridge swing freely under this stream, and under twenty people who stand at these distances. Compare the
-#    decays for speeds of 0.6 to 5 m/s. With which power of the speed do they part?
-# 4. The same crowd with Poisson arrivals: how much does Σ scatter about N/2? Check it with 20 000 crowds of your own.
+# 3. Let the bridge swing freely under this stream, and under twenty people who stand at these distances.
+#    Compare the decays for speeds of 0.6 to 5 m/s. With which power of the speed do they part?
+# 4. The same crowd with Poisson arrivals: how much does Σ scatter about N/2? Check it with 20 000 crowds of
+#    your own.
 #
 # Hints
 # -----
 #
-# * A walker without walking force: ``hsi.HarmonicForce([0.0])``.
-# * ``hsi.simulate(crowd, times, initial_state=[1.0, 0.0])`` starts with z = 1; ``ct.initial_response`` does so for a
-#   standing crowd.
+# * The moving system is ``hsi.moving_crowd(bridge, hsi.Traffic([hsi.Walker(...), ...]))``. A walker without
+#   walking force has ``force=hsi.HarmonicForce([0.0])``.
+# * ``hsi.simulate(crowd, times, initial_state=[1.0, 0.0])`` starts with z = 1; ``ct.initial_response`` does so
+#   for a standing crowd.
 # * The stream must be there all the time: let people arrive long before the start.
 # * The mean of sin² is 1/2, that of sin⁴ is 3/8.
 #
 # Solution
 # --------
 #
-# **Task 1.** At x a body counts as φ² of itself at the antinode, so that damping follows sin²(πvt/L). Averaged over the
-# crossing it is half of that at midspan.
+# **Task 1.** At x a body counts as φ² of itself at the antinode, so that damping follows sin²(πvt/L). Averaged
+# over the crossing it is half of that at midspan.
 
 # %%
 import control as ct
@@ -85,7 +87,8 @@ assert np.allclose(alone, [damping_of(one) for one in square], rtol=1e-9)
 assert np.isclose(np.mean(alone) - 0.005, (damping_of(1.0) - 0.005) / 2, rtol=0.03)
 
 # %% [markdown]
-# **Task 2.** At equal distances the squares add up to N/2 at every instant: damping stands still while everybody walks.
+# **Task 2.** At equal distances the squares add up to N/2 at every instant: damping stands still while
+# everybody walks.
 
 # %%
 def regular(speed):
@@ -97,8 +100,9 @@ steady = hsi.effective_along(regular(1.25), seconds, method="pole")[1]
 assert np.allclose(steady, damping_of(N / 2), rtol=1e-9)
 
 # %% [markdown]
-# **Task 3.** A body forgets in 0.16 s, the shape under it changes in 13 s: their ratio, about one percent, is how far the
-# bodies lag behind. The lag of those who walk uphill and downhill on the shape cancels, and what remains is its square.
+# **Task 3.** A body forgets in 0.16 s, the shape under it changes in 13 s: their ratio, about one percent, is
+# how far the bodies lag behind. The lag of those who walk uphill and downhill on the shape cancels, and what
+# remains is its square.
 
 # %%
 speeds, times = np.array([0.625, 1.25, 2.5, 5.0]), np.linspace(0.0, 10.0, 2001)
@@ -113,8 +117,8 @@ assert abs(power - 2) < 0.05
 print(f"at 1.25 m/s decays part by {apart[1]:.0e} of the peak, with speed to the power of {power:.2f}")
 
 # %% [markdown]
-# **Task 4.** N/2 on average, with a standard deviation of √(3N/8): a good quarter of the mean for twenty people. This is what
-# PMC loses. It draws one standing crowd and keeps it, while MC wanders through many.
+# **Task 4.** N/2 on average, with a standard deviation of √(3N/8): a good quarter of the mean for twenty
+# people. This is what PMC loses. It draws one standing crowd and keeps it, while MC wanders through many.
 
 # %%
 rng = np.random.default_rng(1)
@@ -142,5 +146,5 @@ right.legend(frameon=False)
 plt.show()
 
 # %% [markdown]
-# **Think on.** Σ scatters less, relative to its mean, the larger the crowd. For which N is its scatter below 10 %? And is
-# PMC better or worse for a bridge of 2 Hz?
+# **Think on.** Σ scatters less, relative to its mean, the larger the crowd. For which N is its scatter below 10
+# %? And is PMC better or worse for a bridge of 2 Hz?

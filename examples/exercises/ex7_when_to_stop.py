@@ -6,22 +6,22 @@ How many crowds it takes to know a percentile, and why an estimate that has come
 """
 
 # %% [markdown]
-# **Goal.** You can put an interval on a percentile without assuming a distribution, say how many trials it takes, and
-# stop a study without fooling yourself.
+# **Goal.** You can put an interval on a percentile without assuming a distribution, say how many trials it
+# takes, and stop a study without fooling yourself.
 #
 # Theory
 # ------
 #
-# The paper asks that the true 95th percentile lie within ±5 % of the estimate with a confidence of 95 % (section 2.3).
-# Let q be the true p-quantile, and sort n independent trials: X₁ ≤ … ≤ Xₙ. How many of them fall below q is a binomial
-# number K with chance p, whatever the distribution. So, for any ranks l and u,
+# The paper asks that the true 95th percentile lie within ±5 % of the estimate with a confidence of 95 %
+# (section 2.3). Let q be the true p-quantile, and sort n independent trials: X₁ ≤ … ≤ Xₙ. How many of them fall
+# below q is a binomial number K with chance p, whatever the distribution. So, for any ranks l and u,
 #
 # .. math::
 #
 #     P(X_l \le q \le X_u) = P(l \le K < u)
 #
-# Choose l as large and u as small as either tail of K allows, 2.5 % each. For large n the estimate is normal, with the
-# density f of the trials at q:
+# Choose l as large and u as small as either tail of K allows, 2.5 % each. For large n the estimate is normal,
+# with the density f of the trials at q:
 #
 # .. math::
 #
@@ -32,20 +32,23 @@ How many crowds it takes to know a percentile, and why an estimate that has come
 #
 # 1. Write a function for the interval of n sorted samples. For which n has it an upper end at all? Compare with
 #    ``hsi.PercentileRule().judge(samples)``.
-# 2. Rayleigh samples have q = √(−2 ln(1 − p)). In how many of 4000 studies with n = 200 does your interval hold it? What is
-#    the exact chance?
+# 2. Rayleigh samples have q = √(−2 ln(1 − p)). In how many of 4000 studies with n = 200 does your interval hold
+#    it? What is the exact chance?
 # 3. How many Rayleigh trials are needed for ±5 %? Check the answer with ``hsi.monte_carlo``.
-# 4. A colleague stops as soon as the running estimate has changed by less than 1 % over the last 50 trials. In how many of
-#    400 studies is it within ±5 % of q? Explain the share by the formula for sd(q̂).
+# 4. A colleague looks every 50 trials, and stops as soon as the estimate has changed by less than 1 % since the
+#    last look. In how many of 400 studies is it within ±5 % of q? Explain the share by the formula for sd(q̂).
 # 5. Use ``hsi.monte_carlo`` for the peak acceleration of a bridge that fifteen people cross.
 #
 # Hints
 # -----
 #
-# * ``scipy.stats.binom.ppf(0.025, n, p)`` is the smallest k with P(K ≤ k) ≥ 2.5 %. Ranks count from one, Python from zero.
+# * ``scipy.stats.binom.ppf(0.025, n, p)`` is the smallest k with P(K ≤ k) ≥ 2.5 %. Ranks count from one, Python
+#   from zero.
 # * The largest sample is an upper end if P(K = n) = pⁿ is at most 2.5 %.
 # * A Rayleigh density at q is q (1 − p).
-# * A trial is a function of a ``numpy.random.Generator`` that returns a number.
+# * A trial is a function of a ``numpy.random.Generator`` that returns a number. It draws people,
+#   ``hsi.CrowdFlow(persons=15).sample(bridge, rng=rng, force=...)``, tunes them, ``hsi.tune("MF", bridge,
+#   traffic)``, and asks ``hsi.predict``.
 #
 # Solution
 # --------
@@ -91,8 +94,8 @@ assert abs(held - exact) < 3 * np.sqrt(exact * (1 - exact) / 4000)
 print(f"the interval holds q in {held:.1%} of the studies, exactly {exact:.1%}")
 
 # %% [markdown]
-# **Task 3.** The interval reaches 1.96 standard deviations to either side: n = p(1 − p) (1.96/(0.05 q f(q)))², some 800. The
-# upper end reaches further than the lower, and the rule waits for both.
+# **Task 3.** The interval reaches 1.96 standard deviations to either side: n = p(1 − p) (1.96/(0.05 q f(q)))²,
+# some 800. The upper end reaches further than the lower, and the rule waits for both.
 
 # %%
 needed = P * (1 - P) * (1.96 / (0.05 * q * q * (1 - P))) ** 2
@@ -101,8 +104,8 @@ print(f"{needed:.0f} trials by the formula, {np.mean(taken):.0f} on average by t
 assert needed < np.mean(taken) < 2 * needed
 
 # %% [markdown]
-# **Task 4.** An estimate is calm because each trial counts for little, not because it is right. With n trials a share of
-# 2Φ(1.96 √(n/813)) − 1 is within ±5 %, and the colleague stops after some 230.
+# **Task 4.** An estimate is calm because each trial counts for little, not because it is right. With n trials a
+# share of 2Φ(1.96 √(n/813)) − 1 is within ±5 %, and the colleague stops after some 230.
 
 # %%
 looks = np.arange(50, 2001, 50)
@@ -116,8 +119,8 @@ assert abs(right - expected) < 0.1
 print(f"calm after {looks[stop].mean():.0f} trials, and right in {right:.0%} of the studies")
 
 # %% [markdown]
-# **Task 5.** Trial i of a study draws from a stream of its own, so that the answer depends on the seed alone, not on who
-# computes it. We ask for ±15 % to be quick.
+# **Task 5.** Trial i of a study draws from a stream of its own, so that the answer depends on the seed alone,
+# not on who computes it. We ask for ±15 % to be quick.
 
 # %%
 bridge, flow = hsi.reference_bridge(frequency=2.0), hsi.CrowdFlow(persons=15)
@@ -146,5 +149,6 @@ ax.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
 plt.show()
 
 # %% [markdown]
-# **Think on.** Each look at the interval is a chance to stop on a lucky one. ``hsi.monte_carlo`` looks after 100 trials and then
-# each time a quarter more; find out what looking after every trial does to the share of task 2.
+# **Think on.** Each look at the interval is a chance to stop on a lucky one. ``hsi.monte_carlo`` looks after
+# 100 trials and then each time a quarter more; find out what looking after every trial does to the share of
+# task 2.

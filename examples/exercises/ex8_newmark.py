@@ -6,26 +6,27 @@ A method that is stable, keeps energy and has second order may still be wrong by
 """
 
 # %% [markdown]
-# **Goal.** You can say before you start what a time step does to a resonance, and why order alone does not tell.
+# **Goal.** You can say before you start what a time step does to a resonance, and why order alone does not
+# tell.
 #
 # Theory
 # ------
 #
-# A mode of unit mass under a force p obeys z̈ + 2ξωż + ω²z = p. Newmark's average acceleration method (β = 1/4, γ = 1/2)
-# steps from t to t + h by
+# A mode of unit mass under a force p obeys z̈ + 2ξωż + ω²z = p. Newmark's average acceleration method (β = 1/4,
+# γ = 1/2) steps from t to t + h by
 #
 # .. math::
 #
-#     \dot z_+ = \dot z + \frac{h}{2} (\ddot z + \ddot z_+), \qquad
-#     z_+ = z + h \dot z + \frac{h^2}{4} (\ddot z + \ddot z_+)
+#     v_+ = v + \frac{h}{2} (a + a_+), \qquad
+#     z_+ = z + h v + \frac{h^2}{4} (a + a_+)
 #
-# and the equation of motion at t + h. This is the trapezoidal rule, in control the rule of Tustin or the bilinear
-# transform: its steady response at ω is the true one at another frequency, (2/h) tan(ωh/2). A free vibration comes
-# out slow, at
+# with v = ż, a = z̈, and the equation of motion at t + h. This is the trapezoidal rule, in control the rule of
+# Tustin or the bilinear transform: its steady response at ω is the true one at another frequency, (2/h)
+# tan(ωh/2). A free vibration comes out slow, at
 #
 # .. math::
 #
-#     \frac{2}{h} \arctan\frac{\omega h}{2} = \omega (1 - \delta + \dots), \qquad \delta = \frac{(\omega h)^2}{12}
+#     \frac{2}{h} \arctan\frac{\omega h}{2} \approx \omega (1 - \delta), \qquad \delta = \frac{(\omega h)^2}{12}
 #
 # In resonance a shift by δ is weighed against the half-width of the peak, ξ. The steady state errs by
 #
@@ -36,24 +37,25 @@ A method that is stable, keeps energy and has second order may still be wrong by
 # Tasks
 # -----
 #
-# 1. Write the method as a loop. Show for ξ = 0 and p = 0 that a step turns (z, ż/ω) by the angle 2 arctan(ωh/2), and does
-#    not change its length.
-# 2. A force p₀ cos ωt walks over a simply supported bridge in T = 40 s: p = cos(ωt) sin(πt/T). Find the exact acceleration
-#    from rest, for 2 Hz.
-# 3. Draw the largest error of Newmark, relative to the peak, over steps of 20 to 1.25 ms, for ξ of 0.2, 0.5 and 2 %. Find
-#    the order by regression. Which error does 10 ms make at 0.2 %?
-# 4. Compute the error of the steady state at 10 ms from the warped frequency, and compare with e. Which step keeps it below
-#    1 % at 2 Hz and 0.2 %, and which at 5 Hz?
-# 5. Sample the same mode with ``ct.sample_system(..., method="foh")``, exact for forces that are straight between samples.
-#    What does 10 ms do now, and why?
+# 1. Write the method as a loop. Show for ξ = 0 and p = 0 that a step turns (z, ż/ω) by the angle 2
+#    arctan(ωh/2), and does not change its length.
+# 2. A force p₀ cos ωt walks over a simply supported bridge in T = 40 s: p = cos(ωt) sin(πt/T). Find the exact
+#    acceleration from rest, for 2 Hz.
+# 3. Draw the largest error of Newmark, relative to the peak, over steps of 20 to 1.25 ms, for ξ of 0.2, 0.5 and
+#    2 %. Find the order by regression. Which error does 10 ms make at 0.2 %?
+# 4. Compute the error of the steady state at 10 ms from the warped frequency, and compare with e. Which step
+#    keeps it below 1 % at 2 Hz and 0.2 %, and which at 5 Hz?
+# 5. Sample the same mode with ``ct.sample_system(..., method="foh")``, exact for forces that are straight
+#    between samples. What does 10 ms do now, and why?
 #
 # Hints
 # -----
 #
-# * z̈₊ follows from the equation of motion at t + h; put what is known of ż₊ and z₊ in first.
-# * cos a sin b is half the difference of two sines. Find the response to e^{iwt} from rest: a particular one, and free
-#   vibrations at the two poles that cancel it and its rate at t = 0.
-# * Straight lines between the samples of a sine are a sine that is smaller by (ωh)²/12, with the same frequency.
+# * a₊ follows from the equation of motion at t + h; put what is known of v₊ and z₊ in first.
+# * cos a sin b is half the difference of two sines. Find the response to exp(iwt) from rest: a particular one,
+#   and free vibrations at the two poles that cancel it and its rate at t = 0.
+# * Straight lines between the samples of a sine are a sine that is smaller by (ωh)²/12, with the same
+#   frequency.
 #
 # Solution
 # --------
@@ -85,8 +87,8 @@ assert np.allclose(np.abs(turned), 1)
 assert np.allclose(np.abs(np.angle(turned)), 2 * np.arctan(OMEGA * H / 2))
 
 # %% [markdown]
-# **Task 2.** A particular response to e^{iwt} is H(w) e^{iwt}. Free vibrations at the poles p₁ and p₂ take away its value and
-# its rate at the start.
+# **Task 2.** A particular response to exp(iwt) is H(w) exp(iwt). Free vibrations at the poles p₁ and p₂ take
+# away its value and its rate at the start.
 
 # %%
 T = 40.0
@@ -109,8 +111,8 @@ def force_at(times):
     return np.cos(OMEGA * times) * np.sin(np.pi * times / T)
 
 # %% [markdown]
-# **Task 3.** The order is two, as promised, which also shows that the exact solution is one. But what stands in front of h²
-# grows as damping falls.
+# **Task 3.** The order is two, as promised, which also shows that the exact solution is one. But what stands in
+# front of h² grows as damping falls.
 
 # %%
 STEPS, DAMPINGS = np.array([0.02, 0.01, 0.005, 0.0025, 0.00125]), (0.002, 0.005, 0.02)
@@ -129,8 +131,8 @@ for xi, found in errors.items():
     print(f"ξ = {xi:.1%}: order {order:.2f}, error {found[1]:.1%} at 10 ms")
 
 # %% [markdown]
-# **Task 4.** With 10 ms a full half of the steady state is wrong at 0.2 %. The crossing sees less, because 40 s are not
-# enough to build it up.
+# **Task 4.** With 10 ms a full half of the steady state is wrong at 0.2 %. The crossing sees less, because 40 s
+# are not enough to build it up.
 
 # %%
 def steady_error(h, omega, xi):
@@ -151,8 +153,8 @@ for frequency in (2.0, 5.0):
     print(f"1 % at {frequency:g} Hz takes a step of {1000 * enough:.2f} ms")
 
 # %% [markdown]
-# **Task 5.** The mode moves exactly, with the right period. Only the force is wrong, by δ in size: 0.13 %, whatever the
-# damping. Newmark is Tustin's rule, sample by sample.
+# **Task 5.** The mode moves exactly, with the right period. Only the force is wrong, by δ in size: 0.13 %,
+# whatever the damping. Newmark is Tustin's rule, sample by sample.
 
 # %%
 times = np.linspace(0, T, round(T / H) + 1)
@@ -184,5 +186,5 @@ for ax in (left, right):
 plt.show()
 
 # %% [markdown]
-# **Think on.** ``hsi.simulate`` moves modes and bodies exactly and corrects for what joins them, with order four. Which error
-# does it print for a crossing at 0.2 %, and with which step?
+# **Think on.** ``hsi.simulate`` moves modes and bodies exactly and corrects for what joins them, with order
+# four. Which error does it print for a crossing at 0.2 %, and with which step?

@@ -18,6 +18,8 @@ from hsictrl.cli.outcome import Outcome, one_form
 from hsictrl.cli.workers import checked_processes, workers
 from hsictrl.study import PercentileRule
 
+ASIDE = ("processes", "ledger", "resume", "figure", "as_json", "as_csv")    # options that change no digit of a report
+
 
 def assess(
     context: typer.Context,
@@ -69,6 +71,7 @@ def assess(
     with refusing():
         case = options.described(file, frequency=frequency, damping=damping, modal_mass=modal_mass, density=density,
                                  seed=seed)
+        quoted = "" if file is None else file.read_text(encoding="utf-8")
         rule = PercentileRule(percentile=percentile, tolerance=tolerance)
         one_form(as_json, as_csv)
         processes, book = checked_processes(processes), checked_ledger(ledger, resume)
@@ -82,6 +85,9 @@ def assess(
         found = [study(flow, goal=goal) for flow, goal in case.aims]
     if figure is not None:
         _draw(figure, found, case)
+    if report is not None:
+        _report(report, found, title="the reference bridge" if file is None else file.name, description=quoted,
+                command=options.as_typed(context, leave_out=ASIDE))
     guides = guide_rows(found)
     Outcome(
         description=case, rows=[one.to_dict() for one in found], table=table(found, rule),
@@ -96,3 +102,11 @@ def _draw(path: Path, found: list[assessment.Assessment], case: Description) -> 
     largest = max(found, key=lambda one: one.pmc.estimate)
     with whole_file(path) as draft:
         draw(draft, largest, case)
+
+
+def _report(path: Path, found: list[assessment.Assessment], *, title: str, description: str, command: str) -> None:
+    from hsictrl.report import report_page  # only now: it loads matplotlib
+
+    page = report_page(found, title=f"Assessment of {title}", description=description, command=command)
+    with whole_file(path) as draft:
+        draft.write_text(page, encoding="utf-8")

@@ -252,6 +252,7 @@ class OccupiedBridge(ct.StateSpace):
         Examples
         --------
         >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.pedestrian import Pedestrian
         >>> couple(reference_bridge(frequency=2.0), Pedestrian(), [25.0]).zeros().round(3)
         array([ 0.   +0.j  ,  0.   +0.j  , -6.126+19.48j, -6.126-19.48j])
         """

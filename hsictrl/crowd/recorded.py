@@ -42,7 +42,7 @@ class Recorded:
 
     @property
     def speed(self) -> float:
-        """Mean speed on the deck [m/s]."""
+        """Median speed, averaged over all stays [m/s]."""
         lasting = [stay.departure - stay.arrival for stay in self.stays]
         return float(np.average([stay.speed for stay in self.stays], weights=lasting))
 
@@ -165,7 +165,7 @@ def _step_frequency(recording: Recording, one: Recorded, given: Any) -> float:
         return _told(recording, one.rows, given)
     if given is not None:
         return check.number("step_frequency", given, **BY_HAND)
-    remedy = f"it follows from {one.speed:.3g} m/s; give step_frequency, or another speed for still"
+    remedy = f"it follows from {one.speed:.3g} m/s; give step_frequency, or leave that person out"
     return check.number(f"{_person(recording, one.rows)}: step_frequency", preferred_step_frequency(one.speed),
                         **BY_HAND | {"remedy": remedy})
 

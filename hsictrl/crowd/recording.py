@@ -52,7 +52,7 @@ class Recording:
             i = int(np.argmax(again))
             first, second = sorted(order[i:i + 2])
             raise ValueError(f"{self.place(second, 'id')}: nobody can be recorded twice at a time, got person "
-                             f"{self.columns['id'][second]} at {self.columns['time'][second]:g} s in row "
+                             f"{self.columns['id'][second]:g} at {self.columns['time'][second]:g} s in row "
                              f"{self.rows[first]}, too; leave one of them out")
 
     def place(self, index: int, head: str) -> str:

@@ -62,8 +62,8 @@ def load(path: Path) -> dict[str, Any]:
         Fields of `Traffic` by name.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
+            arrays = {name: found[name] for name in found.files}
         head = json.loads(arrays["head"].item())
         mark, form = head["mark"], head["format"]
         if mark != MARK:

@@ -104,9 +104,9 @@ class Traffic:
             Frames per second, where the table has frames and does not say [Hz].
         step_frequency : float or str, optional
             One for all who walk, or the name of a column that tells it for each; `preferred_step_frequency` of their
-            mean speed on the deck if not given [Hz].
+            median speed on the deck if not given [Hz].
         still : float
-            Mean speed on the deck below which a person stands, without a force; 0 lets everybody step [m/s].
+            Median speed on the deck below which a person stands, without a force; 0 lets everybody step [m/s].
         force : WalkingForce, optional
             Walking force of the others; the narrow-band `ZivanovicForce` if not given.
         population, standing_population : Population, optional

@@ -7,6 +7,7 @@ from typing import Any, final
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
@@ -15,6 +16,7 @@ from hsictrl.bridge import Footbridge
 FASTEST = 10.0     # m/s
 STRIDE = 1.0       # s; over about a stride, the sway of a body adds nothing to its way
 SHORTEST = 1e-6    # s; what a stay must last to be one
+ON_EDGE = 1e-9     # m; as near an edge as makes no difference, and farther than rounding reaches
 AWAY = -1.0        # m; a place x off every deck, which begins at 0
 
 
@@ -39,7 +41,7 @@ class Trajectory:
     Attributes
     ----------
     speed : float
-        Mean speed, from places some one second apart [m/s].
+        Median speed, from places some one second apart: how fast the person walks, stops left aside [m/s].
 
     Raises
     ------
@@ -56,7 +58,7 @@ class Trajectory:
            [25. ,  0.5],
            [-1. ,  0. ]])
     >>> there_and_back.arrival, there_and_back.departure, round(there_and_back.speed, 2)
-    (0.0, 50.0, 1.0)
+    (0.0, 50.0, 1.25)
 
     Somebody who stands for ten minutes:
 
@@ -79,7 +81,7 @@ class Trajectory:
                              "give a place for each time")
         check.store(self, times=times, x=x, y=y, _curve=PchipInterpolator(times, np.column_stack([x, y])))
         self._refuse_jumps()
-        check.store(self, speed=self._mean_speed())
+        check.store(self, speed=self._median_speed())
 
     @property
     def arrival(self) -> float:
@@ -116,7 +118,7 @@ class Trajectory:
         """
         times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
         there = (times >= self.times[0]) & (times <= self.times[-1])
-        return np.where(there[:, None], self._curve(np.where(there, times, self.times[0])), [AWAY, 0.0])
+        return np.where(there[:, None], self._places(np.where(there, times, self.times[0])), [AWAY, 0.0])
 
     def stays_on(self, bridge: Footbridge) -> list[Trajectory]:
         """The parts of the trajectory that lie on a deck, from one of its edges to the next.
@@ -139,20 +141,30 @@ class Trajectory:
         (array([20., 60.]), array([ 0., 50.]))
         """
         edges = [(0, 0.0), (0, bridge.length), (1, -bridge.width / 2), (1, bridge.width / 2)]
-        crossings = [PchipInterpolator(self.times, (self.x, self.y)[axis]).solve(edge, extrapolate=False)
-                     for axis, edge in edges]
-        ends = np.unique(np.concatenate([self.times[[0, -1]], *crossings]))
-        ends = ends[np.isfinite(ends)]     # whoever walks along an edge has no time of crossing it
-        on = np.concatenate([[False], bridge.carries(self._curve((ends[:-1] + ends[1:]) / 2)), [False]])
+        ends = np.unique(np.concatenate([self.times[[0, -1]], *(self._crossings(*edge) for edge in edges)]))
+        on = np.concatenate([[False], bridge.carries(self._places((ends[:-1] + ends[1:]) / 2)), [False]])
         changes = np.flatnonzero(on[1:] != on[:-1])
         return [self._between(ends[first], ends[last], bridge) for first, last in changes.reshape(-1, 2)
                 if ends[last] - ends[first] > SHORTEST]
+
+    def _crossings(self, axis: int, edge: float) -> Array:
+        """When an edge of the deck is crossed or met: at most once between two known places, whose order is kept."""
+        beyond = (self.x, self.y)[axis] - edge
+        side = np.where(np.abs(beyond) > ON_EDGE, np.sign(beyond), 0)
+        found = [brentq(lambda time: self._curve(time)[axis] - edge, *self.times[i:i + 2])
+                 for i in np.flatnonzero(side[1:] * side[:-1] < 0)]
+        return np.concatenate([self.times[side == 0], found])
+
+    def _places(self, times: Array) -> Array:
+        """Places at times of the stay, which rounding takes nowhere but between the known ones."""
+        (x_low, x_high), (y_low, y_high) = ((np.min(one), np.max(one)) for one in (self.x, self.y))
+        return np.clip(self._curve(times), [x_low, y_low], [x_high, y_high])
 
     def _between(self, start: float, stop: float, bridge: Footbridge) -> Trajectory:
         """The part from one time to another, which lies on the deck but for rounding."""
         inner = self.times[(self.times > start + SHORTEST) & (self.times < stop - SHORTEST)]
         times = np.concatenate([[start], inner, [stop]])
-        x, y = self._curve(times).T
+        x, y = self._places(times).T
         return Trajectory(times, np.clip(x, 0.0, bridge.length), np.clip(y, -bridge.width / 2, bridge.width / 2))
 
     def _refuse_jumps(self) -> None:
@@ -165,12 +177,15 @@ class Trajectory:
     def _speeds(self) -> Array:
         return np.asarray(np.hypot(np.diff(self.x), np.diff(self.y)) / np.diff(self.times))
 
-    def _mean_speed(self) -> float:
-        """Over the first place in each second, and the last one."""
+    def _median_speed(self) -> float:
+        """Over the first place in each second, and the last one, by how long each speed lasts."""
         _, firsts = np.unique(np.floor((self.times - self.arrival) / STRIDE), return_index=True)
         kept = np.unique([*firsts, len(self.times) - 1])
-        way = np.sum(np.hypot(np.diff(self.x[kept]), np.diff(self.y[kept])))
-        return float(way / (self.departure - self.arrival))
+        lasting = np.diff(self.times[kept])
+        speeds = np.hypot(np.diff(self.x[kept]), np.diff(self.y[kept])) / lasting
+        order = np.argsort(speeds)
+        gone = np.cumsum(lasting[order])
+        return float(speeds[order][np.searchsorted(gone, gone[-1] / 2)])
 
 
 def check_on_deck(trajectory: Trajectory, bridge: Footbridge) -> None:

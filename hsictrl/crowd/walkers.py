@@ -61,7 +61,8 @@ class Walkers:
     trajectories: Sequence[Trajectory | None] = ()
 
     def __post_init__(self) -> None:
-        check.store(self, trajectories=tuple(self.trajectories) if any(self.trajectories) else ())
+        followed = any(one is not None for one in self.trajectories)
+        check.store(self, trajectories=tuple(self.trajectories) if followed else ())
         for name in ("weight", "step_frequency", "speed"):
             bound: Any = {"least": 0} if self.trajectories and name == "speed" else {"above": 0}
             values = check.numbers(name, getattr(self, name), **bound, remedy=f"give one {name} per walker")

@@ -20,7 +20,7 @@ from hsictrl.identify.reading import signals
 BLOCKS = 50             # of a record, between which covariances scatter
 FEWEST_ROWS = 10        # block rows of the Hankel matrix
 MARGIN = 3.0            # samples, after decimation, in a period of the highest frequency that is asked for
-FEWEST_ORDERS = 2       # at which a mode shows
+STILL = 1e-12           # of the largest value, which rounding leaves of a straight line
 QUANTILE = float(student.ppf(0.975, BLOCKS - 1))
 
 
@@ -41,13 +41,11 @@ class SubspaceMode:
         Complex mode shape at the sensors, 1 where it is largest [-].
     order : int
         Order of the model that knows the mode best [-].
-    seen : int
-        Number of models in which it shows [-].
 
     Examples
     --------
     >>> mode = SubspaceMode(frequency=2.0, damping=0.01, frequency_error=0.002, damping_error=0.001,
-    ...                     shape=np.ones(1, dtype=complex), order=2, seen=4)
+    ...                     shape=np.ones(1, dtype=complex), order=2)
     >>> print(mode)
     2.0000 Hz [1.9960, 2.0040], 1.000 % [0.799, 1.201] (subspace, order 2)
     >>> frequency, damping = mode
@@ -59,7 +57,6 @@ class SubspaceMode:
     damping_error: float
     shape: NDArray[np.complex128]
     order: int
-    seen: int
 
     def __post_init__(self) -> None:
         check.freeze(self.shape)
@@ -93,7 +90,7 @@ class SubspaceMode:
         Examples
         --------
         >>> mode = SubspaceMode(frequency=2.0, damping=0.01, frequency_error=0.002, damping_error=0.001,
-        ...                     shape=np.ones(1, dtype=complex), order=2, seen=4)
+        ...                     shape=np.ones(1, dtype=complex), order=2)
         >>> mode.to_dict()["frequency_error_hz"]
         0.002
         """
@@ -101,7 +98,7 @@ class SubspaceMode:
                 "frequency_interval_hz": list(self.frequency_interval), "damping_interval": list(self.damping_interval),
                 "frequency_error_hz": self.frequency_error, "damping_error": self.damping_error,
                 "shape_real": self.shape.real.tolist(), "shape_imag": self.shape.imag.tolist(),
-                "order": self.order, "seen": self.seen}
+                "order": self.order}
 
 
 @final
@@ -117,7 +114,7 @@ class SubspaceIdentification:
     Examples
     --------
     >>> mode = SubspaceMode(frequency=2.0, damping=0.01, frequency_error=0.002, damping_error=0.001,
-    ...                     shape=np.ones(1, dtype=complex), order=2, seen=4)
+    ...                     shape=np.ones(1, dtype=complex), order=2)
     >>> print(SubspaceIdentification(modes=(mode,)))
     2.0000 Hz [1.9960, 2.0040], 1.000 % [0.799, 1.201] (subspace, order 2)
     """
@@ -147,7 +144,7 @@ class SubspaceIdentification:
         Examples
         --------
         >>> mode = SubspaceMode(frequency=2.0, damping=0.01, frequency_error=0.002, damping_error=0.001,
-        ...                     shape=np.ones(1, dtype=complex), order=2, seen=4)
+        ...                     shape=np.ones(1, dtype=complex), order=2)
         >>> SubspaceIdentification(modes=(mode,)).nearest(1.9).frequency
         2.0
         """
@@ -194,8 +191,8 @@ def subspace_identification(
     harmonic of walking shows as a mode of its own.
 
     Models of order 2, 4, … are fitted. Of all their poles the one with the smallest relative standard error of
-    damping is a mode; poles whose frequency intervals overlap with its own are the same one; then the next is taken.
-    What shows at one order only is left out, and so is what may have no damping by its interval.
+    damping is a mode; those whose frequency intervals overlap with its own are the same one, and leave; then the next
+    is taken, as long as its damping is known to lie above zero.
 
     Standard errors come from 50 blocks of the record, each of which must hold the time that the covariances span;
     intervals are those of Student's t.
@@ -207,6 +204,9 @@ def subspace_identification(
     ...                       sense_at=[12.5, 25.0, 37.5])
     >>> record = hsi.virtual_measurement(occupied, rng=np.random.default_rng(1))
     >>> print(subspace_identification(record, highest=3.0))
+    1.9740 Hz [1.9700, 1.9780], 0.624 % [0.447, 0.801] (subspace, order 2)
+    >>> print(hsi.effective(occupied, method="pole"))
+    1.9726 Hz, 0.716 % (pole), |H| = 0.002696 m/s² per N
     """
     time, outputs = signals(record, timepts)
     most = check.whole("order", order, least=4, remedy="give twice the number of modes that you expect, and more")
@@ -219,24 +219,24 @@ def subspace_identification(
 
 
 def _modes(found: Poles, highest: float) -> list[SubspaceMode]:
-    """Poles that belong together, the best known of each, by frequency."""
+    """The best known of the poles that belong together, by frequency."""
     relative = found.damping_error / found.damping
-    left = (found.damping > QUANTILE * found.damping_error) & (found.frequency <= highest)
+    known = (QUANTILE * relative < 1) & (found.frequency <= highest)
+    left = np.full(len(relative), True)
     modes = []
-    while np.any(left):
-        best = int(np.argmin(np.where(left, relative, np.inf)))
+    while np.any(left & known):
+        best = int(np.argmin(np.where(left & known, relative, np.inf)))
+        modes.append(_mode(found, best))
         reach = QUANTILE * (found.frequency_error + found.frequency_error[best])
-        same = left & (np.abs(found.frequency - found.frequency[best]) <= reach)
-        modes.append(_mode(found, best, len(np.unique(found.order[same]))))
-        left &= ~same
-    return sorted((mode for mode in modes if mode.seen >= FEWEST_ORDERS), key=lambda mode: mode.frequency)
+        left &= np.abs(found.frequency - found.frequency[best]) > reach
+    return sorted(modes, key=lambda mode: mode.frequency)
 
 
-def _mode(found: Poles, index: int, seen: int) -> SubspaceMode:
+def _mode(found: Poles, index: int) -> SubspaceMode:
     return SubspaceMode(
         frequency=float(found.frequency[index]), frequency_error=float(found.frequency_error[index]),
         damping=float(found.damping[index]), damping_error=float(found.damping_error[index]),
-        shape=found.shape[index], order=int(found.order[index]), seen=seen)
+        shape=found.shape[index], order=int(found.order[index]))
 
 
 def _reduced(outputs: Array, time: Array, highest: float) -> tuple[Array, float]:
@@ -244,10 +244,13 @@ def _reduced(outputs: Array, time: Array, highest: float) -> tuple[Array, float]
     given = (len(time) - 1) / float(time[-1] - time[0])
     most = check.number("highest", highest, above=0, remedy="give the frequency [Hz] up to which modes are sought")
     if given < MARGIN * most:
-        raise ValueError(f"record must be sampled at {MARGIN:g} times highest={most:g} Hz at least, got {given:.4g} Hz; "
-                         "sample it faster, or seek slower modes")
+        raise ValueError(f"record must be sampled at {MARGIN:g} times highest={most:g} Hz at least, got {given:.4g} "
+                         "Hz; sample it faster, or seek slower modes")
     factor = int(given / (MARGIN * most) + 1e-9)
     level = detrend(outputs, axis=1)
+    still = np.flatnonzero(np.std(level, axis=1) <= STILL * np.max(np.abs(outputs)))
+    if still.size:
+        raise ValueError(f"every output must vibrate, got none in {still[0]}; leave it out")
     return (decimate(level, factor, ftype="fir", axis=1) if factor > 1 else level), given / factor
 
 
@@ -262,7 +265,8 @@ def _references(given: Sequence[int] | None, outputs: int) -> list[int]:
     """Indices of the reference channels."""
     if given is None:
         return list(range(outputs))
-    chosen = [check.whole("references", index, least=0, remedy="count from 0") for index in check.several("references", given)]
+    chosen = [check.whole("references", index, least=0, remedy="count from 0")
+              for index in check.several("references", given)]
     if max(chosen) >= outputs or len(set(chosen)) < len(chosen):
         raise ValueError(f"references must be different outputs below {outputs}, got {chosen}; count from 0")
     return chosen

@@ -14,9 +14,6 @@ from hsictrl.coupling import OccupiedBridge
 from hsictrl.loop.gain import REMEDY, LoopGain
 from hsictrl.loop.sensitivity import Sensitivity
 
-POINTS = 2001
-AROUND = np.geomspace(1e-6, 0.1, 41)    # beside a mode of little damping |S| turns within its bandwidth
-
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -104,16 +101,16 @@ def amplified_bands(
     """
     check.instance("occupied", occupied, OccupiedBridge, REMEDY)
     occupied.bridge.mode(mode)
-    left, limits = Sensitivity(LoopGain(occupied)), _limits(occupied, band)
+    left = Sensitivity(LoopGain(occupied))
 
     def excess(omega: Any) -> Any:
         return np.abs(left.horner(1j * np.atleast_1d(omega), warn_infinite=False)[mode, mode]) - 1
 
-    grid = _grid(occupied, *limits)
+    grid = 2 * np.pi * left.gain.frequencies(band)
     above = excess(grid)
     turns = np.flatnonzero((above[:-1] > 0) != (above[1:] > 0))
     edges = [brentq(lambda omega: float(excess(omega)[0]), *grid[i:i + 2], xtol=1e-14 * grid[i]) for i in turns]
-    ends = np.array([limits[0], *edges, limits[1]]) / (2 * np.pi)
+    ends = np.array([grid[0], *edges, grid[-1]]) / (2 * np.pi)
     bands = np.column_stack([ends[:-1], ends[1:]])
     within = excess(2 * np.pi * bands.mean(axis=1))
     top, at = _largest(excess, grid, int(np.argmax(above)))
@@ -127,20 +124,3 @@ def _largest(excess: Any, grid: Array, top: int) -> tuple[float, float]:
                             options={"xatol": 1e-10 * grid[top]})
     omega = max(float(found.x), grid[top], key=lambda one: float(excess(one)[0]))
     return 1 + float(excess(omega)[0]), omega / (2 * np.pi)
-
-
-def _grid(occupied: OccupiedBridge, low: float, high: float) -> Array:
-    around = np.multiply.outer(occupied.bridge.omega, np.concatenate([1 - AROUND, [1], 1 + AROUND])).ravel()
-    return np.unique(np.concatenate([np.geomspace(low, high, POINTS), around[(around > low) & (around < high)]]))
-
-
-def _limits(occupied: OccupiedBridge, band: Any) -> tuple[float, float]:
-    """Where to look [rad/s]."""
-    if band is None:
-        own = np.concatenate([occupied.bridge.omega, occupied.people.omega])
-        return 0.1 * float(own.min()), 10 * float(own.max())
-    pair = check.numbers("band", band, above=0, ndim=1, remedy="give (low, high) in Hz")
-    if len(pair) != 2 or pair[0] >= pair[1]:
-        raise ValueError(f"band must be (low, high) with low below high, got {pair.tolist()}; give two frequencies "
-                         "in Hz")
-    return 2 * np.pi * float(pair[0]), 2 * np.pi * float(pair[1])

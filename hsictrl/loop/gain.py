@@ -14,6 +14,8 @@ from hsictrl._names import labels
 from hsictrl.coupling import OccupiedBridge, OccupiedMeasurement
 
 Complex = NDArray[np.complex128]
+POINTS = 2001
+AROUND = np.geomspace(1e-6, 0.1, 81)    # beside a mode of little damping the loop gain turns within its bandwidth
 REMEDY = "make one with couple(bridge, people, positions)"
 
 
@@ -82,6 +84,38 @@ class LoopGain(ct.StateSpace):
         if np.any(missed):    # at a pole, of a mode or of a body, the host knows the limit
             gain[:, :, missed] = super().horner(s[missed], warn_infinite)
         return gain
+
+    def frequencies(self, band: tuple[float, float] | None = None) -> Array:
+        """Frequencies that resolve the resonance of every mode, which the host's own choice may miss.
+
+        Parameters
+        ----------
+        band : (float, float), optional
+            From where to where; from a tenth of the lowest frequency of bridge and bodies to ten times the
+            highest if not given [Hz].
+
+        Returns
+        -------
+        array, shape (w,)
+            Increasing [Hz].
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.coupling import couple
+        >>> hertz = LoopGain(couple(reference_bridge(frequency=2.0))).frequencies((1.0, 4.0))
+        >>> print(hertz[[0, -1]], 2.0 in hertz)
+        [1. 4.] True
+        """
+        low, high = self._limits() if band is None else _pair(band)
+        modes = self.occupied.bridge.omega / (2 * np.pi)
+        around = np.multiply.outer(modes, np.concatenate([1 - AROUND, [1], 1 + AROUND])).ravel()
+        inside = around[(around > low) & (around < high)]
+        return np.unique(np.concatenate([[low], np.geomspace(low, high, POINTS)[1:-1], inside, [high]]))
+
+    def _limits(self) -> tuple[float, float]:
+        own = np.concatenate([self.occupied.bridge.omega, self.occupied.people.omega]) / (2 * np.pi)
+        return 0.1 * float(own.min()), 10 * float(own.max())
 
     def __deepcopy__(self, memo: dict[int, Any]) -> LoopGain:
         return self.__reduce__()[0](*self.__reduce__()[1])
@@ -159,6 +193,14 @@ def _matrices(occupied: OccupiedBridge) -> tuple[Array, Array, Array, Array]:
     D = rows.T * people.unsprung_mass @ rows
     C = np.hstack([D @ acceleration, -rows.T * people.stiffness, -rows.T * people.damping_coefficient])
     return A, B, C, D
+
+
+def _pair(band: Any) -> tuple[float, float]:
+    pair = check.numbers("band", band, above=0, ndim=1, remedy="give (low, high) in Hz")
+    if len(pair) != 2 or pair[0] >= pair[1]:
+        raise ValueError(f"band must be (low, high) with low below high, got {pair.tolist()}; give two frequencies "
+                         "in Hz")
+    return float(pair[0]), float(pair[1])
 
 
 def _rebuild(occupied: OccupiedBridge, name: str, inputs: list[str], outputs: list[str], states: list[str]) -> LoopGain:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
+
+from scipy.stats import binomtest
 
 from hsictrl.paper.eeklo import POSTURES
 from hsictrl.paper.fig7 import chosen
+from hsictrl.paper.identified import ALONG
 from hsictrl.paper.intervals import Interval, verdict
 from hsictrl.paper.reports import Finding, Rows
 
@@ -15,7 +19,8 @@ UPRIGHT, BENT = POSTURES
 
 def findings(rows: Rows) -> dict[str, Callable[[], Finding]]:
     """The claims that the rows of figure 7 decide, by id."""
-    evaluated = {"C13": upright, "C14": bent_legs, "C15": added_mass, "C16": lateral_bodies}
+    evaluated = {"C13": upright, "C14": bent_legs, "C15": added_mass, "C16": lateral_bodies,
+                 "C18": walking}
     return {name: partial(evaluate, rows) for name, evaluate in evaluated.items()}
 
 
@@ -55,6 +60,26 @@ def lateral_bodies(rows: Rows) -> Finding:
     return (_listed({posture: f"ξ_eff − ξ_B {_percent(sideways)} with, {_percent(upwards)} without"
                      for posture, (upwards, sideways) in gains.items()}),
             told, "not three times as much, as a whole interval")
+
+
+def walking(rows: Rows) -> Finding:
+    """Walking people: what is identified lies in the region of as many with bent legs along the span."""
+    tests = [row for row in rows if row["source"] == "subspace"]
+    shares = [_share(row) for row in tests]
+    told = verdict(share.above(_exactly(0.8)) for share in shares)
+    inside = ", ".join(f"{row['posture']}, {row['persons']} persons: {100 * row['inside']:.0f}" for row in tests)
+    crowds = [100 * row["inside"] for row in chosen(rows, "vertical", ALONG)]
+    meet = [100 * row["interval_meets"] for row in tests]
+    return (f"of 100 tests inside: {inside}; interval meets the region: {min(meet):.0f} to {max(meet):.0f}", told,
+            f"a test of three minutes scatters as much as the region is wide, of which a crowd without any error of "
+            f"identification is inside in {min(crowds):.0f} to {max(crowds):.0f} of 100")
+
+
+def _share(row: dict[str, Any]) -> Interval:
+    """Share of tests inside, with its Clopper–Pearson interval."""
+    count = round(row["inside"] * row["trials"])
+    low, high = binomtest(count, row["trials"]).proportion_ci()
+    return Interval(row["inside"], float(low), float(high))
 
 
 def _frequency(row: dict[str, float]) -> Interval:

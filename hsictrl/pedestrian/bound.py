@@ -28,7 +28,7 @@ def largest_difference(omega: Array, damping: Array, full: Standing, small: Stan
     """
     full, small = _taking_part(*full), _taking_part(*small)
     scale = float(np.sqrt(omega.min() * omega.max()))      # arcs are shortest, for their frequency, where the bridge is
-    terms = _enough(max(np.abs(_circle(people, scale)[0]).max() for people, _ in (full, small)))
+    terms = _enough(max(np.abs(_circle(people, scale)[0]).max(initial=0.5) for people, _ in (full, small)))
     (exact, exact_tail), (series, tail) = (_series(*standing, scale, terms) for standing in (full, small))
     gain, top = _gain(_stiffness(series, omega / scale, damping), 4 * tail)
     apart, sag = _on_circle(exact - series)
@@ -71,9 +71,8 @@ def _series(people: Crowd, rows: Array, scale: float, terms: int) -> tuple[Array
     """Coefficients of the apparent mass in z, and the most that is left out."""
     q, head = _circle(people, scale)
     weights = people.sprung_mass * head * (1 + q)
-    pairs = (rows[:, :, None] * rows[:, None, :]).reshape(len(people), -1)
-    powers = np.cumprod(np.broadcast_to(q, (terms - 1, len(people))), axis=0) / q
-    later = np.real(powers @ (weights[:, None] * pairs))
+    pairs = (rows[:, :, None] * rows[:, None, :]).reshape(len(people), rows.shape[1] ** 2)
+    later = np.real(np.vander(q, terms - 1, increasing=True).T @ (weights[:, None] * pairs))
     first = (people.unsprung_mass + people.sprung_mass * head.real) @ pairs
     size = np.abs(q)
     with np.errstate(divide="ignore"):

@@ -106,9 +106,7 @@ def _representatives(columns: Array, count: int) -> tuple[Indices, Array]:
     chosen: list[int] = []
     rest = target
     for _ in range(count):
-        gain = columns.T @ rest
-        gain[chosen] = -np.inf
-        chosen.append(int(np.argmax(gain)))
+        chosen.append(int(np.argmax(columns.T @ rest)))
         scale = nnls(columns[:, chosen], target)[0]
         rest = target - columns[:, chosen] @ scale
     return np.array(chosen)[scale > 0], scale[scale > 0]
@@ -138,9 +136,9 @@ def _limits(people: Crowd) -> tuple[Array, Array]:
 
 
 def _pairs(rows: Array) -> Array:
-    """Upper triangle of each φφᵀ, scaled so that lengths are Frobenius norms."""
+    """Upper triangle of each φφᵀ."""
     i, j = np.triu_indices(rows.shape[1])
-    return rows[:, i] * rows[:, j] * np.where(i == j, 1.0, np.sqrt(2))
+    return rows[:, i] * rows[:, j]
 
 
 def _stacked(values: Complex) -> Array:

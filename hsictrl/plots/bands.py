@@ -7,8 +7,8 @@ from typing import Any
 
 import control as ct
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
@@ -16,21 +16,22 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.plots import _canvas as canvas
 
-BandAndMean = tuple[PolyCollection, Line2D]
+Drawn = tuple[Artist, Line2D]        # a band or bars, and the means
+LOOKS = ("filled", "hatched", "bars")
 Crowds = Mapping[str, Mapping[str, Any]]
-KEYS = ("persons", "frequency", "damping", "hatched")
-REMEDY = "give {'persons': ..., 'frequency': ..., 'damping': ..., 'hatched': ...}"
+KEYS = ("persons", "frequency", "damping", "look")
+REMEDY = "give {'persons': ..., 'frequency': ..., 'damping': ..., 'look': ...}"
 
 
 def bands_plot(panels: Mapping[str, Crowds], *, ax: np.ndarray | None = None) -> ct.ControlPlot:
-    """Draw effective properties over the number of people: means as lines, 5 % to 95 % as bands (fig. 7).
+    """Draw effective properties over the number of people: means, and 5 % to 95 % as bands or bars (fig. 7).
 
     Parameters
     ----------
     panels : mapping of str to mapping
         For the title of each column, its crowds by label; for each crowd "persons", shape (n,), "frequency" and
-        "damping", shape (3, n), mean, 5 % and 95 % percentile of f_eff and ξ_eff, and "hatched", whether its bands
-        are, rather than filled [-, Hz, -].
+        "damping", shape (3, n), mean, 5 % and 95 % percentile of f_eff and ξ_eff, and "look": "filled" or
+        "hatched" for a band, "bars" for what was identified at single head counts [-, Hz, -].
     ax : array of matplotlib.axes.Axes, optional
         Two rows of axes, a column per panel; those of a new figure if not given.
 
@@ -48,7 +49,7 @@ def bands_plot(panels: Mapping[str, Crowds], *, ax: np.ndarray | None = None) ->
     --------
     >>> from matplotlib.figure import Figure
     >>> found = {"persons": [3, 9], "frequency": [[2.97, 2.94], [2.96, 2.93], [2.98, 2.95]],
-    ...          "damping": [[0.003, 0.004], [0.002, 0.003], [0.004, 0.005]], "hatched": False}
+    ...          "damping": [[0.003, 0.004], [0.002, 0.003], [0.004, 0.005]], "look": "filled"}
     >>> plot = bands_plot({"vertical": {"upright": found}}, ax=Figure().subplots(2, 1))
     >>> [line.get_ydata().tolist() for line in plot.lines[1, 0]]     # ξ_eff [%]
     [[0.3, 0.4]]
@@ -73,24 +74,28 @@ def _name(axes: np.ndarray, titles: list[str]) -> None:
         ax.set_xlabel("Number of persons")
 
 
-def _legend(ax: Axes, drawn: list[BandAndMean]) -> Legend:
+def _legend(ax: Axes, drawn: list[Drawn]) -> Legend:
     return ax.legend(drawn, [str(mean.get_label()) for _, mean in drawn], frameon=False, fontsize="small",
-                     title="mean, and 5 % to 95 % as a band", title_fontsize="small", alignment="left")
+                     title="mean, and 5 % to 95 % as a band or bar", title_fontsize="small", alignment="left")
 
 
-def _panel(ax: Axes, crowds: dict[str, dict[str, Any]], key: str, scale: float) -> list[BandAndMean]:
+def _panel(ax: Axes, crowds: dict[str, dict[str, Any]], key: str, scale: float) -> list[Drawn]:
     canvas.grid(ax)
     ax.margins(x=0.03)
     ax.ticklabel_format(useOffset=False)
-    return [_draw(ax, i, one["persons"], scale * one[key], label, one["hatched"])
+    return [_draw(ax, i, one["persons"], scale * one[key], label, one["look"])
             for i, (label, one) in enumerate(crowds.items())]
 
 
-def _draw(ax: Axes, index: int, persons: Array, rows: Array, label: str, hatched: bool) -> BandAndMean:
+def _draw(ax: Axes, index: int, persons: Array, rows: Array, label: str, look: str) -> Drawn:
     colour = canvas.colour(index)
-    look: dict[str, Any] = ({"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0.6} if hatched
-                            else {"color": colour, "alpha": 0.35, "linewidth": 0})
-    band = ax.fill_between(persons, rows[1], rows[2], **look)
+    if look == "bars":
+        bars = ax.vlines(persons, rows[1], rows[2], color=colour, linewidth=1.2)
+        line, = ax.plot(persons, rows[0], marker="x", markersize=5, linestyle="none", label=label, color=colour)
+        return bars, line
+    faces: dict[str, Any] = ({"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0.6}
+                             if look == "hatched" else {"color": colour, "alpha": 0.35, "linewidth": 0})
+    band = ax.fill_between(persons, rows[1], rows[2], **faces)
     line, = ax.plot(persons, rows[0], marker="o", markersize=3.5, label=label, **canvas.style(index))
     return band, line
 
@@ -111,4 +116,4 @@ def _crowd(name: str, crowd: Mapping[str, Any]) -> dict[str, Any]:
         if rows.shape != (3, len(persons)):
             raise ValueError(f"{name}[{key!r}] must have shape (3, {len(persons)}), got {rows.shape}; give mean, 5 % "
                              "and 95 % per head count")
-    return {"persons": persons, "hatched": bool(crowd["hatched"]), **found}
+    return {"persons": persons, "look": check.choice(f"{name}['look']", crowd["look"], LOOKS), **found}

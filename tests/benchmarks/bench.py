@@ -79,6 +79,22 @@ def effective() -> Row:
                best(lambda: ct.norm(plain, "inf"), 1), "≥ 500×, ≤ 10 ms")
 
 
+def reduced() -> list[Row]:
+    """A crowd of order 8, what it costs to make and to bound, and `ct.forced_response` with it and with everyone."""
+    people, places = crowd(WALKERS)
+    small = people.reduced(order=8, bridge=BRIDGE, positions=places)
+    times = np.arange(0.0, 50.0, 0.01)
+    force, few, whole = np.sin(4 * np.pi * times), hsi.couple(BRIDGE, *small), hsi.couple(BRIDGE, people, places)
+    making = best(lambda: people.reduced(order=8, bridge=BRIDGE, positions=places), 20)
+    bounding, other = best(lambda: small.bound(BRIDGE), 20), f"crowd of order {2 * WALKERS}"
+    return [Row(f"ct.forced_response, {len(times)} times, crowd of order 8", best(
+                lambda: ct.forced_response(few, times, force), 5), other, best(
+                lambda: ct.forced_response(whole, times, force), 3), "≥ 6×"),
+            Row("poles, crowd of order 8", best(few.poles, 20), other, best(whole.poles, 3), "-"),
+            Row(f"Crowd.reduced, {WALKERS} walkers to order 8", making, "-", None, "≤ 50 ms"),
+            Row(f"ReducedCrowd.bound, {small.bound(BRIDGE):.0e}", bounding, "-", None, "-")]
+
+
 def trial() -> list[Row]:
     """One PMC trial: 150 walkers with narrow-band forces who step on during one crossing time, and its response."""
     flow = hsi.CrowdFlow(density=1.0)
@@ -213,6 +229,7 @@ def rows() -> Iterator[Row]:
     yield coupling()
     yield from frequency_response()
     yield effective()
+    yield from reduced()
     yield from trial()
     yield from stepping()
 

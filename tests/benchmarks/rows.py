@@ -80,9 +80,10 @@ def publish(name: str, title: str, columns: list[str], cells: list[list[str]], n
 
 
 def where() -> dict[str, str]:
-    """When and on what a table was measured."""
+    """When and on what a table was measured, and what else the machine did: a load of one or two is the run itself."""
     versions = [f"{package} {version(package)}" for package in ("hsictrl", "control", "numpy", "scipy", "numba")]
-    return {"date": date.today().isoformat(), "machine": f"{processor()}, {os.cpu_count()} cores",
+    machine = f"{processor()}, {os.cpu_count()} cores, load average {os.getloadavg()[0]:.1f}"
+    return {"date": date.today().isoformat(), "machine": machine,
             "versions": ", ".join([f"Python {platform.python_version()}", *versions])}
 
 
