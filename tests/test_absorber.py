@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 from itertools import product
 
 import control as ct
@@ -12,7 +13,7 @@ from second_road import appendix_a, dense, on_coordinate, peaks, sines, transfer
 import hsictrl as hsi
 from hsictrl.cli.description import read_description
 from hsictrl.cli.study import read_study
-from hsictrl.prediction import tuned_peaks
+from hsictrl.prediction import models, tuned_peaks
 
 RATIOS = (0.005, 0.02, 0.1, 0.5)
 DAMPINGS = (0.0, 0.01, 0.0857, 0.3, 0.7, 0.999)
@@ -138,6 +139,13 @@ def test_it_is_a_body_like_any_other():
     np.testing.assert_allclose(occupied(1j * omega), expected(1j * omega), rtol=1e-9)
 
 
+def test_a_measured_bridge_takes_it_as_a_body():
+    bridge, hertz = hsi.reference_bridge(frequency=2.0), np.linspace(1.5, 2.5, 501)
+    measured = hsi.MeasuredBridge(response=hsi.frf(bridge, hertz), positions=[25.0], modal_mass=25e3)
+    found = hsi.couple(measured, TMD, [25.0]).frdata
+    np.testing.assert_allclose(found.ravel(), dense(bridge, [TMD], [25.0])(2j * np.pi * hertz), rtol=1e-9)
+
+
 def test_fixed_to_the_bridge_it_is_what_it_is_beside_the_crowd():
     bridge, people = two_modes(), hsi.Population.walking().sample(5, np.random.default_rng(1))
     places, omega = np.array([5.0, 12.0, 26.0, 30.0, 44.0]), np.geomspace(1, 100, 50)
@@ -183,6 +191,16 @@ def test_the_models_have_it(model, standing):
     expected = ct.forced_response(system, time, on * 700 * 0.43 * np.cos(2 * np.pi * 1.9 * time)).outputs
     error = np.interp(found.time, time, expected) - np.ravel(found.outputs)
     assert np.max(np.abs(error)) < 2e-3 * np.max(np.abs(expected))
+
+
+def test_what_is_left_of_a_vibration_dies_as_its_slowest_pole():
+    """Where two peaks share the motion, ξ_eff is twice the damping of either pole."""
+    bridge, weak = undamped(), hsi.Absorber(mass=500.0, frequency=1.96, damping=0.01)
+    system = hsi.couple(bridge.with_absorbers(weak, at=[25.0]))
+    slowest = -max(dense(bridge, [weak], [25.0]).poles().real)
+    assert models._slowest_decay(system, models._resonances(system)) == pytest.approx(slowest, rel=1e-9)
+    by_the_peak = hsi.effective(system)
+    assert by_the_peak.damping * 2 * np.pi * by_the_peak.frequency > 1.5 * slowest
 
 
 def test_the_steady_state_has_it():
@@ -240,13 +258,15 @@ def test_an_assessment_has_it_and_says_that_the_guide_has_not():
 
 @pytest.mark.parametrize("model", ["MF", "PMC"])
 def test_the_spectral_estimate_has_it(model):
-    """An absorber without mass changes nothing, one of 2 % lowers the response."""
+    """An absorber without mass changes nothing, one of 2 % lowers the response; steps meet the highest peak."""
     bridge, flow = hsi.reference_bridge(frequency=2.0, damping=0.005), hsi.CrowdFlow(density=0.5)
-    bare, nothing, damped = (hsi.spectral_estimate(model, one, flow).rms for one in (
+    bare, nothing, damped = (hsi.spectral_estimate(model, one, flow) for one in (
         bridge, bridge.with_absorbers(hsi.Absorber(mass=1e-6, frequency=1.95, damping=0.08), at=[25.0]),
         bridge.with_absorbers(TMD, at=[25.0])))
-    assert nothing == pytest.approx(bare, rel=1e-3)
-    assert damped < 0.9 * bare
+    assert nothing.rms == pytest.approx(bare.rms, rel=1e-3)
+    assert damped.rms < 0.9 * bare.rms
+    highest = peaks(dense(bridge, [TMD], [25.0]))[0][0] if model == "MF" else hsi.effective(damped.system).frequency
+    assert damped.step_frequency[0] == pytest.approx(highest, rel=1e-6)
 
 
 def test_a_bridge_with_absorbers_is_a_value():
@@ -273,6 +293,9 @@ def test_a_bridge_with_absorbers_is_a_value():
     (lambda: undamped().with_absorbers([TMD], at=[10.0, 20.0]), ValueError,
      "absorbers and places must be as many, got 1 and 2; give one place"),
     (lambda: undamped().with_absorbers(500.0, at=[10.0]), TypeError, "absorbers must be of type list or tuple, got fl"),
+    (lambda: replace(undamped(), absorbers=TMD), TypeError, "absorbers must be of type list or tuple, got Absorber; use"),
+    (lambda: replace(undamped(), absorbers=[TMD]), TypeError, "absorbers must be of type tuple, got Absorber; use with"),
+    (lambda: replace(undamped(), absorbers=[(TMD,)]), ValueError, "absorbers must be pairs of a body and its place, got 1"),
     (lambda: undamped().with_absorbers([500.0], at=[10.0]), TypeError, "absorbers must be of type Body, got float"),
     (lambda: hsi.couple(undamped().with_absorbers(TMD, at=[10.0]), TMD, [60.0]), ValueError, r"positions\[0\] = \(60"),
     (lambda: tuned_peaks(["MF"], [undamped().with_absorbers(TMD, at=[25.0])], hsi.Traffic([walker()])), ValueError,

@@ -532,7 +532,10 @@ def _loaded(mode: Mode, mass: float) -> Mode:
 
 def _fixed(bridge: Footbridge, absorbers: Any) -> tuple[tuple[Body, tuple[float, float]], ...]:
     remedy = "use with_absorbers(absorbers, at=...)"
-    pairs = [check.instance("absorbers", pair, tuple, remedy) for pair in absorbers]
+    pairs = check.instance("absorbers", absorbers, (list, tuple), remedy)
+    for pair in pairs:
+        if len(check.instance("absorbers", pair, tuple, remedy)) != 2:
+            raise ValueError(f"absorbers must be pairs of a body and its place, got {len(pair)} in one; {remedy}")
     for body, _ in pairs:
         check.instance("absorbers", body, Body, "give an Absorber, or a sequence of Absorber")
     places = bridge.on_deck("absorbers", [place for _, place in pairs] or np.empty((0, 2)))
