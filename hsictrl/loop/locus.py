@@ -13,8 +13,9 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
+from hsictrl.loop.branches import all_followed, followed
 from hsictrl.loop.merged import merged_poles, own_poles
-from hsictrl.loop.secular import Secular, followed, newcomer, secular_poles
+from hsictrl.loop.secular import Secular, newcomer, secular_poles
 from hsictrl.pedestrian import Crowd, Pedestrian
 
 Complex = NDArray[np.complex128]
@@ -152,17 +153,18 @@ def root_locus(
 def _equal_arrivals(bridge: Footbridge, body: Pedestrian, places: Array) -> Complex:
     """Equal bodies, merged; those who are more than the modes have their own poles."""
     n, n_m, own = len(places), bridge.n_modes, own_poles(body.omega, body.damping)
-    rows = bridge.participation(places, body.direction)
+    rows, few = bridge.participation(places, body.direction), min(n_m, n + 1)
     grams = np.concatenate([np.zeros((1, n_m, n_m)), np.cumsum(rows[:, :, None] * rows[:, None, :], axis=0)])
-    few = min(n_m, n + 1)
-    coupled = [merged_poles(bridge, body, grams[k:k + 1], k)[0] for k in range(few)]
-    coupled.extend(merged_poles(bridge, body, grams[few:], n_m))
-    poles, branches = np.full((n + 1, 2 * (n_m + n)), np.nan + 0j), _modes(bridge)
-    for k, now in enumerate(coupled):
-        branches = followed(now, np.concatenate([branches, own])[:len(now)])
-        poles[k, :len(now)] = branches
-    for k in range(n_m, n):
-        poles[k + 1:, 2 * (n_m + k):2 * (n_m + k + 1)] = own
+    alone = np.concatenate([_modes(bridge), np.tile(own, n)])
+    poles = np.tile(alone, (n + 1, 1))
+    for k, row in enumerate(poles):
+        row[2 * (n_m + k):] = np.nan
+    for k in range(1, few):
+        before = np.append(poles[k - 1, :2 * (n_m + k - 1)], own)
+        poles[k, :len(before)] = followed(merged_poles(bridge, body, grams[k:k + 1], k)[0], before)
+    start = np.append(poles[few - 1, :2 * (n_m + few - 1)], own)
+    if few <= n:
+        poles[few:, :4 * n_m] = all_followed(merged_poles(bridge, body, grams[few:], n_m), start)
     return poles
 
 
@@ -187,11 +189,8 @@ def _equal_bodies(bridge: Footbridge, body: Pedestrian, places: Array, parameter
     n, n_m, own = len(places), bridge.n_modes, own_poles(varied.omega, varied.damping)
     rows, rank = bridge.participation(places, body.direction), min(n, n_m)
     coupled = merged_poles(bridge, varied, np.broadcast_to(rows.T @ rows, (len(values), n_m, n_m)), rank)
-    branches, poles = np.concatenate([_modes(bridge), np.tile(own[0], rank)]), []
-    for now, alone in zip(coupled, own, strict=True):
-        branches = followed(now, branches)
-        poles.append(np.concatenate([branches, np.tile(alone, n - rank)]))
-    return np.array(poles)
+    branches = all_followed(coupled, np.concatenate([_modes(bridge), np.tile(own[0], rank)]))
+    return np.concatenate([branches, np.tile(own, (1, n - rank))], axis=1)
 
 
 def _bodies(bridge: Footbridge, people: Crowd, places: Array, parameter: str, values: Array) -> Complex:

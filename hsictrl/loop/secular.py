@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
@@ -105,11 +104,6 @@ def newcomer(secular: Secular, body: Pedestrian, row: Array) -> Complex:
         shift = pole**4 / (pole - conjugate) * body.sprung_mass * (row @ np.linalg.pinv(stiffness) @ row)
     guess = pole + shift * min(1.0, FAR * abs(pole) / max(abs(shift), 1e-300))
     return np.array([guess, np.conj(guess)])
-
-
-def followed(poles: Complex, before: Complex) -> Complex:
-    """The poles in the order of those before them, each next to its own, with the least way in all."""
-    return np.asarray(poles[linear_sum_assignment(np.abs(np.subtract.outer(before, poles)))[1]])
 
 
 def _zeros(secular: Secular, guess: Complex) -> Complex | None:

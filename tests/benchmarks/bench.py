@@ -15,6 +15,7 @@ from functools import partial
 import control as ct
 import numpy as np
 from rows import Row, best, show
+from scipy.optimize import linear_sum_assignment
 
 import hsictrl as hsi
 from hsictrl.prediction.forces import modal_force
@@ -93,6 +94,31 @@ def reduced() -> list[Row]:
             Row("poles, crowd of order 8", best(few.poles, 20), other, best(whole.poles, 3), "-"),
             Row(f"Crowd.reduced, {WALKERS} walkers to order 8", making, "-", None, "≤ 50 ms"),
             Row(f"ReducedCrowd.bound, {small.bound(BRIDGE):.0e}", bounding, "-", None, "-")]
+
+
+def root_locus() -> list[Row]:
+    """`root_locus` against the poles of `couple` for every number of people, dense eigenvalue problems."""
+    people, random_places = crowd(WALKERS)
+    return [locus_row("equal", hsi.Pedestrian(), (np.arange(WALKERS) + 0.5) * BRIDGE.length / WALKERS, 50, "≥ 1000×"),
+            locus_row("random", people, random_places, 1, "-")]
+
+
+def locus_row(kind: str, people: hsi.Crowd | hsi.Pedestrian, places: np.ndarray, repeats: int, bar: str) -> Row:
+    start = time.perf_counter()
+    dense = [hsi.couple(BRIDGE, people.part(slice(k)) if isinstance(people, hsi.Crowd) else people, places[:k]).poles()
+             for k in range(WALKERS + 1)]
+    theirs = time.perf_counter() - start
+    locus = hsi.root_locus(BRIDGE, people, places)
+    error = max(apart(poles[~np.isnan(poles)], known) for poles, known in zip(locus.poles, dense, strict=True))
+    ours = best(lambda: hsi.root_locus(BRIDGE, people, places), repeats)
+    return Row(f"root_locus, 0 to {WALKERS} {kind} walkers, error {error:.0e} rad/s", ours,
+               f"{WALKERS + 1} times couple(…).poles()", theirs, bar)
+
+
+def apart(poles: np.ndarray, known: np.ndarray) -> float:
+    """Largest distance between poles, each matched to its own."""
+    distances = np.abs(np.subtract.outer(poles, known))
+    return float(distances[linear_sum_assignment(distances)].max())
 
 
 def trial() -> list[Row]:
@@ -230,6 +256,7 @@ def rows() -> Iterator[Row]:
     yield from frequency_response()
     yield effective()
     yield from reduced()
+    yield from root_locus()
     yield from trial()
     yield from stepping()
 
