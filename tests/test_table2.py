@@ -29,6 +29,7 @@ from hsictrl.paper import (
     fig4,
     fig7,
     fig8,
+    identified,
     load_cycles,
     maps,
     readings,
@@ -38,6 +39,7 @@ from hsictrl.paper import (
 from hsictrl.paper.cells import CELLS, DEFAULT, Cell, Reading, SharedTrafficTrial
 from hsictrl.paper.intervals import Interval, percentile, ratio, verdict
 from hsictrl.paper.reports import Finding, Rows, Run, committed
+from hsictrl.paper.virtual_tests import PACES, DecayTrial, SpanTrial, WalkingTrial
 
 MODELS = ("SF", "MF", "MFAM", "PMC", "MC")
 # Table 2, typed from the paper: percent over MC; three natural frequencies of case 1, then of case 2
@@ -239,7 +241,7 @@ def test_all_studies_share_one_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
     """Under as many labels as there are studies: figures 4 and 7, table 2, figure 8, spans, readings, two sweeps."""
     labels, ledger = [], hsi.Ledger("not_made.ledger")
     sizes = {SharedTrafficTrial: 5, fig8.ForcesTrial: 6, load_cycles.LoadCyclesTrial: 3, fig4.SharedCrowdTrial: 1,
-             fig7.PostureTrial: 1}
+             fig7.PostureTrial: 1, SpanTrial: 2, DecayTrial: 2, WalkingTrial: 4}
 
     def made_up(trial: Callable, *, rule: hsi.StopRule, label: str, **how: object) -> hsi.Ensemble:
         assert how["ledger"] is ledger
@@ -264,7 +266,8 @@ def test_all_studies_share_one_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(claims, "_claims", list)            # nothing is judged
     for name in ("claims", "readings"):
         paper.compute(name, recompute=True, ledger=ledger)
-    assert len(set(labels)) == len(labels) == 4 + len(fig7.TRIALS) + 12 + 12 + 4 + 9 * 12 + 2
+    walked = len(identified.DECAYS) + len(identified.SPANS) + len(PACES) * len(identified.WALKERS)
+    assert len(set(labels)) == len(labels) == 4 + len(fig7.TRIALS) + walked + 12 + 12 + 4 + 9 * 12 + 2
 
 
 @pytest.mark.parametrize("trial", [

@@ -37,8 +37,12 @@ def poles(signals: Array, rate: float, references: list[int], *, highest_order: 
         calc_unc=True, nb=blocks, hc={"xi_max": 1.0, "mpc_lim": None, "mpd_lim": None, "CoV_max": None})
     measured = setup(signals.T, rate)
     measured.add_algorithms(identification)
-    with _quiet():
-        measured.run_all()
+    try:
+        with _quiet():
+            measured.run_all()
+    except np.linalg.LinAlgError:
+        raise ValueError("record must be a random vibration at every sensor, got covariances that are singular; leave "
+                         "out copies of a signal, and cut what is a pure tone or a blow") from None
     return _even_orders(identification.result)
 
 

@@ -32,9 +32,9 @@ class SubspaceMode:
     Parameters
     ----------
     frequency : float
-        Natural frequency |λ|/2π of the pole [Hz].
+        Natural frequency, the modulus of the pole over 2π [Hz].
     damping : float
-        Damping ratio -Re λ/|λ| [-].
+        Damping ratio, minus the real part of the pole over its modulus [-].
     frequency_error, damping_error : float
         Standard errors, from the scatter between blocks of the record [Hz, -].
     shape : array, shape (p,)
@@ -163,7 +163,7 @@ def subspace_identification(
     Parameters
     ----------
     record : control.TimeResponseData or array_like, shape (m,) or (p, m)
-        Accelerations, velocities or displacements at p sensors, evenly sampled [any, s].
+        Accelerations, velocities or displacements, all of one kind, at p sensors, evenly sampled [any, s].
     highest : float
         Modes up to this frequency are sought; the record is filtered and decimated to three to six times it [Hz].
     timepts : array_like, shape (m,), optional
@@ -182,7 +182,7 @@ def subspace_identification(
     ImportError
         If pyOMA-2 is not installed: ``pip install 'hsictrl[oma]'``.
     ValueError
-        If the record is uneven, has holes, is sampled too slowly, or is too short.
+        If the record is uneven, has holes, is sampled too slowly, too short, or without any randomness.
 
     Notes
     -----
@@ -247,8 +247,8 @@ def _reduced(outputs: Array, time: Array, highest: float) -> tuple[Array, float]
         raise ValueError(f"record must be sampled at {MARGIN:g} times highest={most:g} Hz at least, got {given:.4g} "
                          "Hz; sample it faster, or seek slower modes")
     factor = int(given / (MARGIN * most) + 1e-9)
-    level = detrend(outputs, axis=1)
-    still = np.flatnonzero(np.std(level, axis=1) <= STILL * np.max(np.abs(outputs)))
+    level = detrend(outputs / (np.max(np.abs(outputs)) or 1.0), axis=1)
+    still = np.flatnonzero(np.std(level, axis=1) <= STILL)
     if still.size:
         raise ValueError(f"every output must vibrate, got none in {still[0]}; leave it out")
     return (decimate(level, factor, ftype="fir", axis=1) if factor > 1 else level), given / factor

@@ -65,14 +65,17 @@ def lateral_bodies(rows: Rows) -> Finding:
 def walking(rows: Rows) -> Finding:
     """Walking people: what is identified lies in the region of as many with bent legs along the span."""
     tests = [row for row in rows if row["source"] == "subspace"]
-    shares = [_share(row) for row in tests]
-    told = verdict(share.above(_exactly(0.8)) for share in shares)
-    inside = ", ".join(f"{row['posture']}, {row['persons']} persons: {100 * row['inside']:.0f}" for row in tests)
-    crowds = [100 * row["inside"] for row in chosen(rows, "vertical", ALONG)]
-    meet = [100 * row["interval_meets"] for row in tests]
-    return (f"of 100 tests inside: {inside}; interval meets the region: {min(meet):.0f} to {max(meet):.0f}", told,
-            f"a test of three minutes scatters as much as the region is wide, of which a crowd without any error of "
-            f"identification is inside in {min(crowds):.0f} to {max(crowds):.0f} of 100")
+    told = verdict(_share(row).above(_exactly(0.8)) for row in tests)
+    inside = "; ".join(f"{row['posture']}, {row['persons']} persons {_hundredths(row['inside'])}" for row in tests)
+    meet = [_hundredths(row["interval_meets"]) for row in tests]
+    crowds = max(_hundredths(row["inside"]) for row in chosen(rows, "vertical", ALONG))
+    return (f"of 100 tests inside: {inside}; interval meets the region: {min(meet)} to {max(meet)}", told,
+            "in three minutes an identification scatters as much as the region is wide; of crowds without any such "
+            f"error {crowds} of 100 are inside")
+
+
+def _hundredths(share: float) -> int:
+    return round(100 * share)
 
 
 def _share(row: dict[str, Any]) -> Interval:
