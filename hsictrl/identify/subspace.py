@@ -32,9 +32,9 @@ class SubspaceMode:
     Parameters
     ----------
     frequency : float
-        Natural frequency |λ|/2π of the pole [Hz].
+        Natural frequency ``|λ|/2π`` of the pole [Hz].
     damping : float
-        Damping ratio -Re λ/|λ| [-].
+        Damping ratio ``-Re λ/|λ|`` [-].
     frequency_error, damping_error : float
         Standard errors, from the scatter between blocks of the record [Hz, -].
     shape : array, shape (p,)
