@@ -2,10 +2,12 @@
 
 import csv
 import dataclasses
+import html
 import io
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -109,7 +111,8 @@ def test_options_reach_the_study(monkeypatch, found, tmp_path):
     assert [flow for (_, flow), _ in calls] == [hsi.CrowdFlow(density=0.3), hsi.CrowdFlow(density=1.0)]
     assert str(calls[0][0][0]) == str(hsi.reference_bridge(frequency=3.25, damping=0.01, modal_mass=40e3))
     assert calls[0][1] == {"force": hsi.ZivanovicForce(), "seed": 8, "executor": None,
-                           "ledger": hsi.Ledger(book), "rule": hsi.PercentileRule(percentile=90, tolerance=0.2)}
+                           "ledger": hsi.Ledger(book), "rule": hsi.PercentileRule(percentile=90, tolerance=0.2),
+                           "mode": 0, "goal": None}
 
 
 def test_without_options_it_is_section_4_2_at_5_percent(monkeypatch, found):
@@ -174,6 +177,59 @@ def test_figure_shows_the_trial_that_it_names(monkeypatch, young, found, tmp_pat
         assert abs(response.outputs).max() == pytest.approx(ensemble.samples[0], rel=0.01)   # peak lies between samples
     for response, properties in zip(given["frfs"], given["effective"], strict=True):
         assert abs(response.frdata).max() == pytest.approx(properties.peak, rel=0.02)
+
+
+def test_goals_and_guides_are_in_table_json_and_csv(monkeypatch, found, tmp_path):
+    """The guides' rows by the functions that a Python user calls; the verdict is read from the interval."""
+    path = tmp_path / "goals.toml"
+    path.write_text("seed = 3\n[traffic]\nclasses = ['TC1', 'TC3']\ngoal = ['CL1', 'CL3']\n[force]\nmodel = 'young'")
+    flows = [hsi.CrowdFlow(traffic_class=name) for name in ("TC1", "TC3")]
+    cases = [hsi.guide_cases(hsi.reference_bridge(), flow) for flow in flows]
+    calls, known = [], [dataclasses.replace(one, flow=flow, guides=case, goal=goal) for one, flow, case, goal in
+                        zip(found, flows, cases, ("CL1", "CL3"), strict=True)]
+    monkeypatch.setattr(assessment, "assess", lambda bridge, flow, **words: calls.append((flow, words["goal"])) or
+                        known[flows.index(flow)])
+    document = json.loads(run("assess", path, "--json").stdout)
+    assert calls == [(flows[0], "CL1"), (flows[1], "CL3")]
+    assert [(row["traffic_class"], row["goal"], row["verdict_pmc"]) for row in document["rows"]] == [
+        ("TC1", "CL1", "not met"), ("TC3", "CL3", hsi.comfort_verdict(found[1].pmc.interval, "CL3"))]
+    assert [(row["traffic_class"], row["guide"], row["a_m_per_s2"]) for row in document["guides"]] == [
+        (flow.traffic_class, guide, hsi.guide_value(hsi.reference_bridge(), flow, guide=guide).acceleration)
+        for flow in flows for guide in ("hivoss", "setra")]
+    printed = run("assess", path).stdout
+    for words in ("TC3", "goal CL3", "→not met", "Sétra", f"{document['guides'][-1]['a_m_per_s2']:#.3g} CL4", "ψ=1.00"):
+        assert words in printed
+    assert max(map(len, printed.split("footbridge")[0].splitlines())) <= 80
+    assert [row["verdict_mf"] for row in csv.DictReader(io.StringIO(run("assess", path, "--csv").stdout))] == [
+        hsi.comfort_verdict(one.mf.interval, one.goal) for one in known]
+
+
+# report
+
+@pytest.mark.usefixtures("assessed")
+def test_report_quotes_the_file_and_the_command_that_makes_it_again(found, tmp_path):
+    path, page = tmp_path / "a<b>.toml", tmp_path / "a.html"
+    path.write_text("# <i>mine</i>\n" + YOUNG)
+    done = run("assess", path, "--tolerance", 0.5, "--density", 0.1, "--density", 0.2, "--report", page,
+               "--processes", 1)
+    text = html.unescape(re.sub("<[^>]*>", "", page.read_text(encoding="utf-8")))
+    assert done.stderr == f"wrote {page}\n"
+    assert "Assessment of a<b>.toml" in text
+    assert path.read_text() in text
+    words = ["hsictrl", "assess", str(path), "--density", "0.1", "--density", "0.2", "--tolerance", "0.5", "--report",
+             str(page)]
+    again = next(line for line in text.splitlines() if " assess " in line)
+    assert sorted(shlex.split(again)[1:]) == sorted(words[1:])
+
+
+@pytest.mark.usefixtures("assessed")
+def test_a_report_that_fails_leaves_the_old_one(monkeypatch, young, tmp_path):
+    def fail(*args, **kwargs):
+        raise KeyboardInterrupt
+    monkeypatch.setattr("hsictrl.report.report_page", fail)
+    (tmp_path / "a.html").write_text("old")
+    run("assess", young, "--report", tmp_path / "a.html", code=130)
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.html", "old")]
 
 
 # effective
@@ -499,6 +555,10 @@ def test_workers_have_one_blas_thread_and_leave_interrupts_to_the_command(monkey
     ("assess --figure TMP/no/a.png", "the output folder must exist, got TMP/no; make it first"),
     ("assess --figure TMP", "a figure must be a file that ends in one of .avif"),
     ("assess --figure TMP/a.doc", "got TMP/a.doc; rename it"),
+    ("assess --mode 1", "mode must be below the number of modes 1, got 1; count modes from 0, or describe the bridge"),
+    ("assess --mode -1", "mode must be at least 0, got -1; count modes from 0"),
+    ("assess --report TMP/no/a.html", "the output folder must exist, got TMP/no; make it first"),
+    ("assess --report TMP/a.pdf", "a report must be a file that ends in one of .html, got TMP/a.pdf; rename it"),
     ("assess --json --csv", "the output must have one form, got --json and --csv; leave one of them out"),
     ("assess TMP/no.toml", "TMP/no.toml: the description must be a file that can be read, got No such file"),
     ("assess TMP/bad.toml", "TMP/bad.toml, line 2, [bridge] damping: damping must lie in [0, 1), got 5; give a"),

@@ -286,6 +286,8 @@ def test_models_for_which_bridges_share_nothing_have_the_digits_of_trials_of_one
      "out, or use 'hsictrl assess'"),
     ("[traffic]\nstep_frequency = 1.9\n[sweep]", "line 2, [traffic] step_frequency: the steps of a sweep must be tuned "
      "to each bridge, got step_frequency=(1.9, 0.0); leave it out, or use 'hsictrl assess'"),
+    ("[traffic]\npersons = [15, 15]\n[sweep]", "line 2, [traffic] persons: the flows of a sweep must differ in "
+     "density, got 0.1, 0.1 persons/m²; leave one out"),
     ("seed = 3000000000\n[sweep]", "seed must be at most 2147483647, got 3000000000; netCDF files hold no larger one"),
 ])
 def test_refusals_name_line_key_rule_value_and_remedy(text: str, says: str, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hsictrl.comfort import (
     comfort_class,
+    comfort_verdict,
     design_acceleration,
     en1990_limit,
     equivalent_pedestrians,
@@ -113,6 +114,28 @@ def test_comfort_class_at_every_bound(direction: str, acceleration: float, expec
     assert comfort_class(acceleration, direction) == expected
 
 
+@pytest.mark.parametrize(("goal", "interval", "expected"), [
+    ("CL1", (0.3, 0.49), "met"), ("CL1", (0.49, 0.5), "undecided"), ("CL1", (0.5, 0.6), "not met"),
+    ("CL2", (0.3, 0.999), "met"), ("CL2", (0.999, 1.0), "undecided"), ("CL2", (1.0, 3.0), "not met"),
+    ("CL3", (0.3, 2.5), "met"), ("CL3", (2.5, 2.501), "undecided"), ("CL3", (2.501, 3.0), "not met"),
+    ("CL3", (math.nan, 0.1), "undecided"), ("CL3", (3.0, math.nan), "undecided"),
+])
+def test_verdict_on_both_sides_of_every_bound(goal: str, interval: tuple[float, float], expected: str) -> None:
+    assert comfort_verdict(interval, goal) == expected
+
+
+def test_verdict_of_a_lateral_acceleration() -> None:
+    assert [comfort_verdict((0.05, end), "CL1", "lateral") for end in (0.09, 0.11)] == ["met", "undecided"]
+
+
+def test_lateral_load_of_hivoss_is_35_newtons() -> None:
+    """Half of the trapezoid at 0.6 Hz."""
+    design = design_acceleration(**HAND | {"frequency": 0.6, "direction": "lateral"})
+    assert design.acceleration == pytest.approx(1.0890 * 35 / 280 / 2, rel=5e-5)
+    assert (design.reduction, design.comfort_class) == (pytest.approx(0.5), "CL1")
+    assert design_acceleration(**HAND | {"frequency": 0.7, "direction": "lateral"}).comfort_class == "CL2"
+
+
 def test_limits_of_en1990() -> None:
     limits = [en1990_limit(), en1990_limit("lateral"), en1990_limit("lateral", crowd="exceptional")]
     assert limits == [0.7, 0.2, 0.4]
@@ -131,6 +154,11 @@ def test_iso10137_is_its_base_curve_times_the_multiplier(frequency: float, base:
         (lambda: comfort_class(-0.1), r"acceleration must be at least 0, got -0.1; .*absolute value"),
         (lambda: comfort_class(float("nan")), r"acceleration must be at least 0, got nan"),
         (lambda: comfort_class(0.1, "sideways"), r"direction must be one of .*got 'sideways'; choose"),
+        (lambda: comfort_verdict((0.1, 0.2), "CL4"), r"goal must be one of 'CL1', 'CL2', 'CL3', got 'CL4'; choose"),
+        (lambda: comfort_verdict((0.1, 0.2, 0.3), "CL1"), r"interval must hold two ends, got shape \(3,\); give"),
+        (lambda: comfort_verdict((-0.1, 0.2), "CL1"), r"acceleration must be at least 0, got -0.1"),
+        (lambda: design_acceleration(**HAND | {"guide": "setra", "direction": "lateral"}),
+         r"direction must be one whose load setra gives, got 'lateral'; choose another guide"),
         (lambda: en1990_limit("lateral", crowd="jumping"), r"crowd must be one of 'normal', 'exceptional'"),
         (lambda: en1990_limit("longitudinal"), r"direction must be one of .*got 'longitudinal'"),
         (lambda: iso10137_limit(0.9), r"frequency must lie in \[1, 8\], got 0.9; .*standard's own curve"),

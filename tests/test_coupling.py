@@ -480,7 +480,7 @@ def test_block_diagonal_bodies_travel_in_the_systems_order():
      "people and positions must be as many, got 2 bodies and 1 positions; give one position per body"),
     (lambda: hsi.couple(beam(), hsi.Crowd.of([]), [20.0]), ValueError, "got 0 bodies and 1 positions; give one posit"),
     (lambda: hsi.couple(beam(), 75, [20.0]), TypeError, "people must be .*, got int; give a Crowd, a Pedestrian or a"),
-    (lambda: hsi.couple(beam(), [70.0], [20.0]), TypeError, "bodies must be of type Pedestrian, got float; give a seq"),
+    (lambda: hsi.couple(beam(), [70.0], [20.0]), TypeError, "bodies must be of type Body, got float; give a sequence"),
 ])
 def test_refusals(make, error, message):
     with pytest.raises(error, match=message):

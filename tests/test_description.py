@@ -67,6 +67,9 @@ def test_every_force(written, text, force):
     ("density = 0.3", [hsi.CrowdFlow(density=0.3)]),
     ("density = [0.3, 1]", [hsi.CrowdFlow(density=0.3), hsi.CrowdFlow(density=1)]),
     ("persons = 15", [hsi.CrowdFlow(persons=15)]),
+    ("classes = 'TC1'", [hsi.CrowdFlow(traffic_class="TC1")]),
+    ("classes = ['TC2', 'TC5']\nweight = 800",
+     [hsi.CrowdFlow(traffic_class=name, weight=800) for name in ("TC2", "TC5")]),
     ("persons = [15, 30]\nspeed = 1.2\nstep_frequency = [1.9, 0.1]\nweight = 800",
      [hsi.CrowdFlow(persons=n, speed=1.2, step_frequency=(1.9, 0.1), weight=800) for n in (15, 30)]),
     ("density = 1.0\nstep_frequency = 1.8", [hsi.CrowdFlow(density=1.0, step_frequency=1.8)]),
@@ -75,6 +78,8 @@ def test_every_force(written, text, force):
                                                            sprung_ratio=1))]),
     ("density = 1.0\npopulation.mass = 80",     # what is left out stays that of walkers
      [hsi.CrowdFlow(density=1.0, population=replace(hsi.Population.walking(), mass=80))]),
+    ("density = 1.0\npopulation = {posture = 'upright', mass = 80}",
+     [hsi.CrowdFlow(density=1.0, population=replace(hsi.Population.standing(), mass=80))]),
 ])
 def test_every_traffic(written, text, flows):
     assert read_description(written("[traffic]\n" + text)).flows == tuple(flows)
@@ -89,7 +94,7 @@ def test_example_at_the_top_of_the_module_runs(written):
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    ("seeed = 1", r"line 1, seeed: key must be one of 'bridge', 'traffic', 'force', 'seed', got 'seeed'; correct"),
+    ("seeed = 1", r"line 1, seeed: key must be one of 'bridge', 'traffic', 'force', 'absorbers', 'seed', got 'seeed'"),
     ("seed = 1\n\n[brigde]\nkind = 1", r"line 3, brigde: key must be one of .*, got 'brigde'"),
     ("bridge = 3", r"line 1, bridge: bridge must be a table, got 3; write it like \[name\]"),
     ("[[bridge]]\nkind = 'beam'", r"line 1, bridge: bridge must be a table, got \[\{"),
@@ -118,7 +123,15 @@ def test_example_at_the_top_of_the_module_runs(written):
     ("[traffic]\ndensity = 5.4", r"\[traffic\] density: density must lie in \(0, 5.4\), got 5.4"),
     ("[traffic]\ndensity = [0.2, nan]", r"\[traffic\] density: density must lie in \(0, 5.4\), got nan"),
     ("[traffic]\ndensity = []", r"density must be a number or a list of numbers, got \[\]"),
-    ("[traffic]\ndensity = 1\npersons = 15", r"either a density or a number of persons, got density=1 and persons=15"),
+    ("[traffic]\ndensity = 1\npersons = 15",
+     r"line 3, \[traffic\] persons: a flow must have one of density, persons, classes, got density and persons;"),
+    ("[traffic]\nclasses = ['TC2', 'TC9']",
+     r"line 2, \[traffic\] classes: classes must be one of 'TC1', .*, got 'TC9'; choose"),
+    ("[traffic]\nclasses = 3", r"line 2, .*classes must be a word in quotes or a list of them, got 3; write it like"),
+    ("[traffic]\nclasses = 'TC2'\ndensity = 1", r"a flow must have one of .*, got density and classes; leave out all"),
+    ("[traffic]\ngoal = 'CL4'", r"line 2, \[traffic\] goal: goal must be one of 'CL1', 'CL2', 'CL3', got 'CL4'"),
+    ("[traffic]\ndensity = [0.1, 0.2, 0.3]\ngoal = ['CL1', 'CL2']",
+     r"line 3, \[traffic\] goal: goal must be one for all rows or one per row \(3\), got 2; match them"),
     ("[traffic]\npersons = 1.5", r"line 2, \[traffic\] persons: persons must be a whole number or a list of them"),
     ("[traffic]\ndensity = 0.001", r"density must put at least one person on the deck of 150 m², got 0.001 persons/m²"),
     ("[traffic]\nspeed = -1.0", r"line 2, \[traffic\] speed: speed must lie in \(0, 10\], got -1; give m/s"),
@@ -127,6 +140,7 @@ def test_example_at_the_top_of_the_module_runs(written):
      r"line 4, \[traffic.population\] direction: key must be one of 'frequency', 'damping', 'mass', 'sprung_ratio'"),
     ("[traffic.population]\ndamping = 30",
      r"line 2, \[traffic.population\] damping: damping must be below 1, got 30; give a fraction, not percent"),
+    ("[traffic.population]\nposture = 'seated'", r"line 2, .*posture must be one of 'bent legs', 'upright', got 'seat"),
     ("[traffic.population]\nmass = [75, true]", r"mass must be a number or \[mean, .*, got \[75, True"),
     ("[force]\nmodel = 'harmonic'", r"line 1, \[force\]: the table must hold 'factors', got no 'factors'"),
     ("[force]\nmodel = 'young'\nvalues = 'worst'", r"line 3, \[force\] values: values must be one of 'mean', 'design'"),
@@ -172,3 +186,18 @@ def test_line_of_a_key(names, line):
 def test_densities_take_the_place_of_rows_and_keep_the_people():
     heavy = Description(flows=(hsi.CrowdFlow(persons=15, weight=800.0),)).at_densities([0.2, 0.4])
     assert heavy.flows == (hsi.CrowdFlow(density=0.2, weight=800.0), hsi.CrowdFlow(density=0.4, weight=800.0))
+
+
+@pytest.mark.parametrize(("text", "goals"), [
+    ("", [None] * 5), ("[traffic]\ngoal = 'CL2'", ["CL2"] * 5),
+    ("[traffic]\npersons = [15, 30]\ngoal = ['CL1', 'CL3']", ["CL1", "CL3"])])
+def test_goals_go_with_their_flows(written, text, goals):
+    assert [goal for _, goal in read_description(written(text)).aims] == goals
+
+
+def test_a_goal_stays_when_densities_take_the_place_of_rows_unless_there_are_several():
+    flows = tuple(hsi.CrowdFlow(traffic_class=name) for name in ("TC2", "TC3"))
+    same = Description(flows=flows, goals=("CL2", "CL2")).at_densities([0.3, 0.4, 0.6])
+    assert same.aims == [(hsi.CrowdFlow(density=density), "CL2") for density in (0.3, 0.4, 0.6)]
+    with pytest.raises(ValueError, match=r"goal must be one for all densities .*, got CL1, CL2; write one"):
+        Description(flows=flows, goals=("CL1", "CL2")).at_densities([0.3])

@@ -234,7 +234,7 @@ rng = np.random.default_rng(0)
     (lambda: hsi.Crowd(mass=[[70.0]], frequency=3, damping=0.3), ValueError,
      r"a crowd must be one row of bodies, got shape \(1, 1\); give arrays of shape \(n,\)"),
     (lambda: hsi.Crowd(mass=[70], frequency=3, damping=0.3, direction=["up"]), ValueError, "got 'up'; choose one of"),
-    (lambda: hsi.Crowd.of([70.0]), TypeError, "bodies must be of type Pedestrian, got float; give a sequence of"),
+    (lambda: hsi.Crowd.of([70.0]), TypeError, "bodies must be of type Body, got float; give a sequence of"),
     (lambda: crowd()[:2], TypeError, r"index must be a whole number, got slice\(None, 2.*; take several .* part"),
     (lambda: hsi.Population(frequency=(3, -1), damping=0.3), ValueError,
      r"frequency\[1\] must be at least 0, got -1; give a value, or \(mean, standard deviation\)"),
@@ -249,3 +249,11 @@ rng = np.random.default_rng(0)
 def test_refusals(make, error, message):
     with pytest.raises(error, match=message):
         make()
+
+
+def test_crowds_add_up():
+    people, others = (hsi.Crowd(mass=mass, frequency=3.0, damping=0.3, direction=direction)
+                      for mass, direction in (([70.0, 80.0], "vertical"), ([90.0], "lateral")))
+    assert list(people + others) == [*people, *others]
+    with pytest.raises(TypeError, match="unsupported operand"):
+        people + others[0]

@@ -33,10 +33,14 @@ from hsictrl.plots import (
     map_plot,
     models_plot,
     normalised_frf_plot,
+    nyquist_plot,
     persons_plot,
+    pole_scatter_plot,
     response_plot,
+    root_locus_plot,
     save,
     save_animation,
+    sensitivity_plot,
     simulation_figure,
     spectrum_plot,
 )
@@ -68,6 +72,8 @@ MAPS = {"few": np.add.outer([0.0, 1.0, 2.0], [0.0, 1.0]), "many": np.add.outer([
 PERSONS = np.where(TIME < 5.0, 3, 4)
 STUDIES = [study(1.0), study(0.3)]
 DECAY = hsi.free_decay(0.3 + np.exp(-0.4 * TIME) * np.cos(4 * np.pi * TIME), timepts=TIME)
+LOCUS = hsi.root_locus(BRIDGE, hsi.Pedestrian(), np.linspace(5, 45, 10))
+SCATTER = hsi.pole_scatter(BRIDGE, hsi.CrowdFlow(persons=10), trials=50, rng=np.random.default_rng(1))
 MAP = {f"μ = {mu}": {"frequency": np.outer([1.0, 0.9, 1.1], np.ones(301)), "damping": np.full((3, 301), mu)}
        for mu in (0.1, 0.2)}
 
@@ -102,6 +108,10 @@ DRAWINGS = {
     "normalised": (2, lambda ax: normalised_frf_plot(
         HERTZ / 3.25, {"few": {"100": FRFS[1]}, "many": {"200": FRFS[1]}}, empty=FRFS[0], ax=ax)),
     "spectrum": (1, lambda ax: spectrum_plot(RECORDS[0], marks=MARKS, ax=ax)),
+    "nyquist": (1, lambda ax: nyquist_plot(hsi.loop_gain(OCCUPIED), ax=ax)),
+    "sensitivity": (1, lambda ax: sensitivity_plot(hsi.sensitivity(OCCUPIED), ax=ax)),
+    "locus": (1, lambda ax: root_locus_plot(LOCUS, ax=ax)),
+    "scatter": (1, lambda ax: pole_scatter_plot(SCATTER, ax=ax)),
     "persons": (1, lambda ax: persons_plot(TIME, PERSONS, ax=ax)),
     "simulation": (3, lambda ax: simulation_figure(
         response=RECORDS[0], marks=MARKS, persons=PERSONS, title="Crowd", ax=ax)),
@@ -154,6 +164,70 @@ def test_titles_of_panels_do_not_meet_the_legends(name: str) -> None:
     for axis, legend in zip(plot.axes[:, 0], plot.legend[:, 0], strict=True):
         if legend is not None:
             assert not axis._left_title.get_window_extent().overlaps(legend.get_window_extent())
+
+
+# the crowd as a controller
+
+
+def test_nyquist_draws_the_loop_gain_and_its_mirror_image() -> None:
+    line, mirrored, point = nyquist_plot(hsi.loop_gain(OCCUPIED), band=(1.0, 9.0)).lines[0, 0]
+    at = 2j * np.pi * hsi.loop_gain(OCCUPIED).frequencies((1.0, 9.0))
+    assert line.get_xdata() + 1j * line.get_ydata() == pytest.approx(hsi.loop_gain(OCCUPIED)(at))
+    assert np.array_equal(mirrored.get_ydata(), -line.get_ydata())
+    assert point.get_xydata().tolist() == [[-1, 0]]
+
+
+def test_nyquist_of_several_modes_draws_their_determinant() -> None:
+    bridge = hsi.Footbridge.simply_supported(length=50, width=3, mass=50e3, frequency=2, damping=0.005, n_modes=2)
+    gain = hsi.loop_gain(hsi.couple(bridge, hsi.Pedestrian(), [10.0, 20.0]))
+    line = nyquist_plot(gain, band=(1.0, 9.0)).lines[0, 0][0]
+    L = gain(2j * np.pi * gain.frequencies((1.0, 9.0)))
+    determinant = (1 + L[0, 0]) * (1 + L[1, 1]) - L[0, 1] * L[1, 0]
+    assert line.get_xdata() + 1j * line.get_ydata() == pytest.approx(determinant - 1)
+
+
+def test_sensitivity_is_drawn_over_hertz_and_shaded_on_both_sides_of_one(ax: Axes) -> None:
+    plot = sensitivity_plot(hsi.sensitivity(OCCUPIED), band=(1.0, 9.0), ax=ax)
+    line, = plot.lines[0, 0]
+    frequencies = line.get_xdata()
+    ratio = hsi.frf(OCCUPIED, frequencies).frdata / hsi.frf(BRIDGE, frequencies).frdata
+    assert line.get_ydata() == pytest.approx(np.abs(ratio[0, 0]))
+    assert entries(plot) == ["sensitivity", "amplifies", "helps"]
+    assert entries(sensitivity_plot([hsi.sensitivity(OCCUPIED)] * 2, labels=["a", "b"])) == ["a", "b"]
+
+
+def test_a_locus_is_drawn_as_frequency_over_damping_with_its_ends_marked(ax: Axes) -> None:
+    plot = root_locus_plot(LOCUS, ax=ax)
+    upper, _, first, last, *bodies = plot.lines[0, 0]
+    assert upper.get_ydata() == pytest.approx(LOCUS.frequency[:, 0])
+    assert upper.get_xdata() == pytest.approx(100 * LOCUS.damping[:, 0])
+    assert first.get_ydata()[0] == pytest.approx(3.25)
+    assert last.get_ydata()[0] == LOCUS.frequency[-1, 0]
+    assert len(bodies) == 20
+    assert entries(plot) == ["bridge", "bodies", "0 people", "10 people"]
+
+
+def test_scatters_are_drawn_with_ellipses_and_the_empty_bridge(ax: Axes) -> None:
+    plot = pole_scatter_plot([SCATTER, SCATTER], labels=["one", "two"], ax=ax)
+    cloud, ellipse, *_, empty = plot.lines[0, 0]
+    assert cloud.get_xdata() == pytest.approx(100 * SCATTER.damping)
+    assert cloud.get_ydata() == pytest.approx(SCATTER.frequency)
+    assert ellipse.get_ydata() == pytest.approx(np.abs(SCATTER.region()) / (2 * np.pi))
+    assert (empty.get_xdata()[0], empty.get_ydata()[0]) == pytest.approx((0.5, 3.25))
+    assert entries(plot) == ["one", "two", "95 %", "empty bridge"]
+
+
+def test_refusals_of_what_is_no_loop() -> None:
+    with pytest.raises(TypeError, match="gain must be of type LoopGain"):
+        nyquist_plot(OCCUPIED)
+    with pytest.raises(TypeError, match="sensitivities must be of type Sensitivity"):
+        sensitivity_plot(OCCUPIED)
+    with pytest.raises(ValueError, match="mode must be below the number of modes 1, got 1"):
+        sensitivity_plot(hsi.sensitivity(OCCUPIED), mode=1)
+    with pytest.raises(TypeError, match="locus must be of type RootLocus"):
+        root_locus_plot(OCCUPIED)
+    with pytest.raises(TypeError, match="scatters must be of type PoleScatter"):
+        pole_scatter_plot(OCCUPIED)
 
 
 # frequency

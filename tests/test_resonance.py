@@ -264,7 +264,7 @@ def test_effective_properties_unpack_print_and_export():
     assert (frequency, damping) == (found.frequency, found.damping)
     assert str(found) == "2.0001 Hz, 0.500 % (peak), |H| = 0.004 m/s² per N"
     row = json.loads(json.dumps(hsi.effective(hsi.couple(beam(frequency=3.7), *walkers(225))).to_dict()))
-    assert set(row) == {"frequency_hz", "damping", "peak_m_per_s2_per_n", "method", "competing"}
+    assert set(row) == {"frequency_hz", "damping", "peak_m_per_s2_per_n", "method", "competing", "mixing"}
     assert len(row["competing"][0]) == 2
 
 

@@ -12,7 +12,8 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from hsictrl._checks import DIRECTIONS
-from hsictrl.bridge.shapes import BeamShape, Shape, SineShape, beam_modes
+from hsictrl.bridge.beams import BeamShape, beam_modes
+from hsictrl.bridge.shapes import Shape, SineShape
 
 PP, CC, CP, PC = ("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "pinned"), ("pinned", "clamped")
 UNEQUAL = [12.0, 20.0, 7.5]

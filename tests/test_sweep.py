@@ -357,6 +357,7 @@ def test_refusals(changed: dict[str, Any], error: type[Exception], message: str)
     ({"mass": 70}, ValueError, "axis must be one of 'scale', 'shape', 'model', 'factor', got 'mass'; choose one"),
     ({"scale": 3}, ValueError, "scale must be one of 1.0, 2.0, got 3; choose one of these"),
     ("scale", TypeError, "point must be of type Mapping, got str; give a dict of axes and one value of each"),
+    ({"scale": np.array([1, 2])}, TypeError, "scale must be of type int or float or str, got ndarray; give one number"),
 ])
 def test_a_point_off_the_axes_is_refused(found: hsi.Sweep, point: Any, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
@@ -370,6 +371,19 @@ def test_a_point_off_the_axes_is_refused(found: hsi.Sweep, point: Any, error: ty
 def test_ratios_off_the_shared_axes_are_refused(found: hsi.Sweep, words: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         found.ratio(*words)
+
+
+def test_ratio_without_a_shared_axis_is_refused() -> None:
+    with pytest.raises(ValueError, match="an axis that the trials share, got 'scale' and none shared; sweep with shar"):
+        sweep(Peak, {"scale": [1, 2]}, rule=ROUGH).ratio("scale", 2, 1)
+
+
+def test_ratio_to_nothing_is_refused() -> None:
+    found = sweep(lambda scale: lambda rng: scale * rng.rayleigh() * np.array([0.0, 1.0]), {"scale": [1]},
+                  shared={"model": ["none", "one"]}, rule=ROUGH)
+    with pytest.raises(ValueError, match="bottom of a ratio must be away from zero, got 0 in a resample of the trials"):
+        found.ratio("model", "one", "none")
+    assert found.ratio("model", "none", "one").high == 0
 
 
 def test_ratio_of_means_is_refused() -> None:

@@ -338,6 +338,7 @@ def test_files_that_are_missing_or_not_text(tmp_path):
     ({"x": X + 1, "vertical": X}, "x must begin at 0, got 1; count it from the end of the deck"),
     ({"x": X[::-1], "vertical": X}, "x must increase, got 50 and then 49; sort the nodes"),
     ({"x": X, "y": [1.0, 1.0], "vertical": X}, "y must increase, got 1 and then 1; give one or more lines"),
+    ({"x": X, "y": [0.5, 1.5], "vertical": X}, "y must hold lines on both sides of the centre line, got 0.5 to 1.5"),
     ({"x": X, "y": [-1.0, 1.0], "vertical": np.ones((2, 51))}, r"vertical must have shape \(51, 2\) or \(51,\), got "),
     ({"x": X}, "a shape must move somewhere, got zeros alone; give one of its components"),
 ])
@@ -352,3 +353,5 @@ def test_refusals_of_what_is_asked_of_it():
         shape(1.0, direction="up")
     with pytest.raises(ValueError, match="order must be at least 0, got -1; give 0, 1 or 2"):
         shape.derivative(1.0, order=-1)
+    with pytest.raises(ValueError, match="order must be at most 5, the degree of the splines, got 6; give 0, 1 or 2"):
+        shape.derivative(1.0, order=6)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, final
 
 import numpy as np
 
+from hsictrl.assessment.guides import GuideCase
+from hsictrl.assessment.trials import PeakTrial
 from hsictrl.bridge import Footbridge
-from hsictrl.comfort import DesignResponse, comfort_class
+from hsictrl.comfort import DesignResponse, comfort_class, comfort_verdict
 from hsictrl.crowd import CrowdFlow
-from hsictrl.study import Ensemble
+from hsictrl.prediction import Prediction
+from hsictrl.study import Ensemble, trial_rng
+from hsictrl.walking import WalkingForce, ZivanovicForce
 
 
 @final
@@ -29,7 +33,15 @@ class Assessment:
     mf, pmc : Ensemble
         Peak acceleration without (MF) and with (PMC) human-structure interaction: a percentile [m/s²].
     guide : DesignResponse
-        Design acceleration of HiVoSS for the same density [m/s²].
+        Design acceleration of HiVoSS for the same mode and density [m/s²].
+    force : WalkingForce
+        Walking force.
+    mode : int
+        The mode in resonance, from 0 [-].
+    goal : {"CL1", "CL2", "CL3"}, optional
+        The worst comfort class that will do.
+    guides : tuple of GuideCase
+        Load cases of all guides on every critical mode.
     remarks : tuple of str
         What a reader of the numbers should know.
 
@@ -49,6 +61,10 @@ class Assessment:
     mf: Ensemble
     pmc: Ensemble
     guide: DesignResponse
+    force: WalkingForce = field(default_factory=ZivanovicForce)
+    mode: int = 0
+    goal: str | None = None
+    guides: tuple[GuideCase, ...] = ()
     remarks: tuple[str, ...] = ()
 
     @property
@@ -66,6 +82,39 @@ class Assessment:
     def classes(self) -> tuple[str, str]:
         """Comfort class without and with interaction."""
         return comfort_class(float(self.mf.estimate)), comfort_class(float(self.pmc.estimate))
+
+    @property
+    def verdicts(self) -> tuple[str, str] | None:
+        """Whether the goal is met without and with interaction: "met", "not met" or "undecided", by the intervals."""
+        if self.goal is None:
+            return None
+        return comfort_verdict(self.mf.interval, self.goal), comfort_verdict(self.pmc.interval, self.goal)
+
+    def prediction(self, model: str, trial: int = 0) -> Prediction:
+        """The response behind the peak of one trial.
+
+        Parameters
+        ----------
+        model : {"MF", "PMC"}
+            Without or with human-structure interaction.
+        trial : int
+            Which trial of the study, from 0 [-].
+
+        Returns
+        -------
+        Prediction
+
+        Examples
+        --------
+        >>> from hsictrl.assessment import assess
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.study import PercentileRule
+        >>> found = assess(reference_bridge(), CrowdFlow(persons=15), rule=PercentileRule(tolerance=0.5))
+        >>> found.prediction("PMC", trial=7).peak_acceleration == found.pmc.samples[7]
+        np.True_
+        """
+        again = PeakTrial(model=model, bridge=self.bridge.led_by(self.mode), flow=self.flow, force=self.force)
+        return again.prediction(trial_rng(self.pmc.seed, trial))
 
     def to_dict(self) -> dict[str, Any]:
         """Export with the units in the keys.
@@ -85,6 +134,7 @@ class Assessment:
         15
         """
         found, (low, high) = np.ravel(self.effective.estimate), map(np.ravel, self.effective.interval)
+        mf, pmc = self.verdicts or (None, None)
         return {
             "density_per_m2": self.flow.density_on(self.bridge), "persons": self.flow.persons_on(self.bridge),
             **_quantity("f_eff", "_hz", found[0], (low[0], high[0])),
@@ -92,7 +142,8 @@ class Assessment:
             **_peak("a_mf", self.mf), **_peak("a_pmc", self.pmc),
             **_quantity("r_hsi", "", self.reduction, self.reduction_interval),
             "class_mf": self.classes[0], "class_pmc": self.classes[1],
-            "hivoss_m_per_s2": self.guide.acceleration, "remarks": "; ".join(self.remarks)}
+            "hivoss_m_per_s2": self.guide.acceleration, "mode": self.mode, "traffic_class": self.flow.traffic_class,
+            "goal": self.goal, "verdict_mf": mf, "verdict_pmc": pmc, "remarks": "; ".join(self.remarks)}
 
 
 def _quantity(name: str, unit: str, estimate: Any, interval: Any) -> dict[str, float]:

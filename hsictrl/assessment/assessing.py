@@ -8,39 +8,44 @@ import numpy as np
 
 from hsictrl import _checks as check
 from hsictrl.assessment.assessed import Assessment
+from hsictrl.assessment.guides import GuideCase, guide_cases, guide_value
 from hsictrl.assessment.trials import EffectiveTrial, PeakTrial, check_case
 from hsictrl.bridge import Footbridge
-from hsictrl.comfort import DesignResponse, design_acceleration
+from hsictrl.comfort import COMFORT_CLASSES, DesignResponse
 from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import tune
 from hsictrl.prediction.refusals import check_vertical
 from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
-PERSON_MASS = 70.0   # kg, of the guides
 PAPER_RULE = PercentileRule()
 
 
 def assess(
     bridge: Footbridge, flow: CrowdFlow, *, force: WalkingForce | None = None,
-    rule: PercentileRule = PAPER_RULE, seed: int = 1, executor: Executor | None = None,
-    ledger: Ledger | None = None,
+    rule: PercentileRule = PAPER_RULE, mode: int = 0, goal: str | None = None, seed: int = 1,
+    executor: Executor | None = None, ledger: Ledger | None = None,
 ) -> Assessment:
-    """Assess a footbridge under a flow of people: damping, accelerations, comfort class.
+    """Assess a footbridge under a flow of people: damping, accelerations, comfort class, and the guides beside them.
 
     Both models see the same people, each tuned to its own resonance (unless the flow sets the step
-    frequency by hand).
+    frequency by hand). A bridge of several modes is assessed for one of them at a time; remarks name other modes for
+    which the guides have a load.
 
     Parameters
     ----------
     bridge : Footbridge
-        The empty bridge; its first mode is the one in resonance.
+        The empty bridge.
     flow : CrowdFlow
         The stream of people.
     force : WalkingForce, optional
         Walking force; the narrow-band `ZivanovicForce` if not given.
     rule : PercentileRule
         Which percentile of the peak acceleration, and when it has settled [-].
+    mode : int
+        The mode in resonance, at whose antinode accelerations are read, from 0 [-].
+    goal : {"CL1", "CL2", "CL3"}, optional
+        The worst comfort class that will do.
     seed : int
         Seed of all trials [-].
     executor : concurrent.futures.Executor, optional
@@ -59,17 +64,22 @@ def assess(
     >>> found.classes[1]
     'CL3'
     """
-    check_assessable(bridge, flow)
+    check_assessable(bridge, flow, mode=mode)
     check.instance("rule", rule, PercentileRule, "use PercentileRule(percentile=…, tolerance=…)")
+    if goal is not None:
+        check.choice("goal", goal, COMFORT_CLASSES[:-1])
     force = ZivanovicForce() if force is None else force
     peaks = {model: monte_carlo(
-        PeakTrial(model=model, bridge=bridge, flow=flow, force=force), rule=rule, seed=seed, executor=executor,
-        ledger=ledger, label=f"{flow}, {model}") for model in ("MF", "PMC")}
-    found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), seed=seed, executor=executor,
-                            ledger=ledger)
-    guide = guide_value(bridge, flow)
-    return Assessment(bridge=bridge, flow=flow, effective=found, mf=peaks["MF"], pmc=peaks["PMC"], guide=guide,
-                      remarks=_remarks(bridge, flow, guide, peaks | {"effective properties": found}))
+        PeakTrial(model=model, bridge=bridge.led_by(mode), flow=flow, force=force), rule=rule, seed=seed,
+        executor=executor, ledger=ledger, label=_label(flow, mode, model)) for model in ("MF", "PMC")}
+    found = study_effective(bridge, flow, rule=MeanRule(tolerance=rule.tolerance), mode=mode, seed=seed,
+                            executor=executor, ledger=ledger)
+    guide, cases = guide_value(bridge, flow, mode=mode), guide_cases(bridge, flow)
+    studies = peaks | {"effective properties": found}
+    return Assessment(
+        bridge=bridge, flow=flow, force=force, mode=mode, goal=goal, effective=found, mf=peaks["MF"], pmc=peaks["PMC"],
+        guide=guide, guides=cases,
+        remarks=(*_remarks(bridge.led_by(mode), flow, guide, studies), *_left_out(bridge, mode, cases)))
 
 
 def study_effective(
@@ -109,7 +119,8 @@ def study_effective(
     """
     trial = EffectiveTrial(bridge=bridge, flow=flow, mode=mode)
     rule = effective_rule() if rule is None else rule
-    return monte_carlo(trial, rule=rule, seed=seed, executor=executor, ledger=ledger, label=f"{flow}, effective")
+    return monte_carlo(trial, rule=rule, seed=seed, executor=executor, ledger=ledger,
+                       label=_label(flow, mode, "effective"))
 
 
 def effective_rule(tolerance: float = 0.05) -> AllRules:
@@ -133,39 +144,7 @@ def effective_rule(tolerance: float = 0.05) -> AllRules:
                      PercentileRule(percentile=95.0, tolerance=tolerance)))
 
 
-def guide_value(bridge: Footbridge, flow: CrowdFlow, *, guide: str = "hivoss", mode: int = 0) -> DesignResponse:
-    """Design acceleration of the guides for one mode and the same density.
-
-    Parameters
-    ----------
-    bridge : Footbridge
-        The empty bridge.
-    flow : CrowdFlow
-        The stream of people.
-    guide : {"hivoss", "setra"}
-        Which guide's load reduction.
-    mode : int
-        Which mode of the bridge, from 0 [-].
-
-    Returns
-    -------
-    DesignResponse
-
-    Examples
-    --------
-    >>> from hsictrl.bridge import reference_bridge
-    >>> round(guide_value(reference_bridge(frequency=2.0, damping=0.005), CrowdFlow(density=0.5)).acceleration, 3)
-    4.268
-    """
-    check_case(bridge, flow)
-    resonant, density = bridge.mode(mode), flow.density_on(bridge)
-    return design_acceleration(
-        frequency=resonant.frequency, damping=resonant.damping, modal_mass=resonant.modal_mass, density=density,
-        area=bridge.area, loaded_area=bridge.area * resonant.shape.mean_absolute,
-        crowd_modal_mass=PERSON_MASS * density * bridge.area * resonant.shape.mean_square, guide=guide)
-
-
-def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
+def check_assessable(bridge: Footbridge, flow: CrowdFlow, *, mode: int = 0) -> None:
     """Refuse what no study should be run for.
 
     Parameters
@@ -174,11 +153,13 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
         The empty bridge.
     flow : CrowdFlow
         The stream of people.
+    mode : int
+        The mode in resonance, from 0 [-].
 
     Raises
     ------
     ValueError
-        If nobody is on the deck, nothing damps the bridge, its first mode does not move vertically, or people are
+        If nobody is on the deck, nothing damps the bridge, the mode does not move vertically, or people are
         too many to walk.
 
     Examples
@@ -191,16 +172,30 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow) -> None:
         raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
                          "give a higher one")
     check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
-    check_vertical(bridge)
-    guide_value(bridge, flow)
+    check_vertical(bridge, mode)
+    guide_value(bridge, flow, mode=mode)
 
 
 def _remarks(
     bridge: Footbridge, flow: CrowdFlow, guide: DesignResponse, ensembles: dict[str, Ensemble],
 ) -> tuple[str, ...]:
+    """On a bridge that is led by the mode in resonance."""
     unsettled = tuple(f"{name}: {one.reason}" for name, one in ensembles.items() if not one.converged)
     drawn = flow.sample(bridge, rng=np.random.default_rng(0))
     outside = f"{bridge.modes[0].frequency:g} Hz lies outside the range for which HiVoSS has a load"
     silent = () if guide.reduction else (outside,)
+    bare = ("the guide's value is that of the bridge without its absorbers",) if bridge.absorbers else ()
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks
-    return (*dict.fromkeys(drawn.remarks + tuned), *silent, *unsettled)
+    return (*dict.fromkeys(drawn.remarks + tuned), *silent, *bare, *unsettled)
+
+
+def _left_out(bridge: Footbridge, mode: int, cases: tuple[GuideCase, ...]) -> tuple[str, ...]:
+    """Modes for which a guide has a vertical load, but which the simulation does not bring into resonance."""
+    others = dict.fromkeys(case.mode for case in cases if case.response.direction == "vertical" and case.mode != mode)
+    return tuple(f"mode {j} ({bridge.modes[j].frequency:.4g} Hz) is critical by the guides too; this study is of mode "
+                 f"{mode}" for j in others)
+
+
+def _label(flow: CrowdFlow, mode: int, what: str) -> str:
+    """Name of a study in a ledger; the first mode goes without saying."""
+    return f"{flow}, mode {mode}, {what}" if mode else f"{flow}, {what}"

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
-from hsictrl._names import labels
+from hsictrl.bridge.beams import beam_modes
 from hsictrl.bridge.mode import Mode
-from hsictrl.bridge.shapes import Shape, SineShape, beam_modes
+from hsictrl.bridge.plant import block
+from hsictrl.bridge.shapes import Shape, SineShape
 from hsictrl.bridge.tables import read_modes
+from hsictrl.pedestrian import Body, Crowd
 
 
 @final
@@ -39,6 +41,8 @@ class Footbridge:
         Mass of the whole bridge, to which a crowd's mass ratio refers (eq. 13) [kg].
     remarks : sequence of str
         What was inferred where the bridge was read from tables.
+    absorbers : sequence of (Body, (float, float))
+        What is fixed to the deck for good, and where, see `with_absorbers`; its mass is not part of `mass` [m].
 
     Examples
     --------
@@ -53,6 +57,7 @@ class Footbridge:
     width: float
     mass: float
     remarks: Sequence[str] = ()
+    absorbers: Sequence[tuple[Body, tuple[float, float]]] = ()
 
     def __post_init__(self) -> None:
         check.store(self, modes=_modes(self.modes), remarks=tuple(self.remarks))
@@ -62,6 +67,7 @@ class Footbridge:
             if not np.isclose(mode.shape.length, self.length):
                 raise ValueError(f"every shape must be as long as the deck, {self.length:g} m, got "
                                  f"{mode.shape.length:g} m; make shape and bridge of one length")
+        check.store(self, absorbers=_fixed(self, self.absorbers))
 
     @classmethod
     def simply_supported(
@@ -203,7 +209,8 @@ class Footbridge:
 
     def __str__(self) -> str:
         lines = [f"footbridge {self.length:g} m × {self.width:g} m, {self.mass:.0f} kg"]
-        return "\n".join(lines + [f"  mode {j}: {mode}" for j, mode in enumerate(self.modes)])
+        lines += [f"  mode {j}: {mode}" for j, mode in enumerate(self.modes)]
+        return "\n".join(lines + [f"  fixed at ({x:g}, {y:g}) m: {body}" for body, (x, y) in self.absorbers])
 
     @property
     def n_modes(self) -> int:
@@ -224,6 +231,12 @@ class Footbridge:
     def damping(self) -> Array:
         """Modal damping ratios ξ_Bj, shape (n_m,) [-]."""
         return np.array([mode.damping for mode in self.modes])
+
+    @property
+    def fixed(self) -> tuple[Crowd, Array]:
+        """Bodies of the `absorbers`, and their places, shape (n, 2) [m]."""
+        places = np.array([place for _, place in self.absorbers]).reshape(-1, 2)
+        return Crowd.of([body for body, _ in self.absorbers]), places
 
     def mode(self, index: int) -> Mode:
         """Mode by its index.
@@ -247,6 +260,29 @@ class Footbridge:
             raise ValueError(f"mode must be below the number of modes {self.n_modes}, got {index}; "
                              "count modes from 0, or describe the bridge with more of them")
         return self.modes[index]
+
+    def led_by(self, mode: int) -> Footbridge:
+        """Put a mode first: the one to whose resonance traffic is tuned, and at whose antinode motion is read.
+
+        Parameters
+        ----------
+        mode : int
+            Index of the mode, from 0 [-].
+
+        Returns
+        -------
+        Footbridge
+            The same bridge; the other modes follow in their order.
+
+        Examples
+        --------
+        >>> bridge = Footbridge.simply_supported(length=50.0, width=3.0, mass=50e3, frequency=1.0, damping=0.005,
+        ...                                      n_modes=3)
+        >>> [mode.frequency for mode in bridge.led_by(1).modes]
+        [4.0, 1.0, 9.0]
+        """
+        first = self.mode(mode)
+        return replace(self, modes=[first, *self.modes[:mode], *self.modes[mode + 1:]])
 
     def moves_vertically(self, mode: int) -> bool:
         """Whether a mode moves vertically at its antinode, so that walking can excite it.
@@ -395,10 +431,42 @@ class Footbridge:
         mass = check.number("mass", mass, least=0, remedy="give kg")
         return replace(self, modes=[_loaded(mode, mass) for mode in self.modes], mass=self.mass + mass)
 
+    def with_absorbers(self, absorbers: Body | Sequence[Body], *, at: Any) -> Footbridge:
+        """Fix tuned mass dampers to the deck: whatever is done with the bridge, they are there.
+
+        They are bodies like those of people, and move as little along the deck as standing ones.
+
+        Parameters
+        ----------
+        absorbers : Absorber or sequence of Absorber
+            One per place, or one that is fixed at all of them.
+        at : array_like, shape (n,) or (n, 2)
+            Places x, or (x, y), on the deck [m].
+
+        Returns
+        -------
+        Footbridge
+            With those that it has already, and these.
+
+        Examples
+        --------
+        >>> from hsictrl.absorber import Absorber
+        >>> print(reference_bridge().with_absorbers(Absorber(mass=500.0, frequency=1.96, damping=0.09), at=[25.0]))
+        footbridge 50 m × 3 m, 50000 kg
+          mode 0: 2.000 Hz, 0.50 %, 25000 kg
+          fixed at (25, 0) m: 500 kg at 1.960 Hz, 9.0 %, vertical
+        """
+        places = self.on_deck("at", check.points("at", at, least=1)).tolist()
+        bodies = [absorbers] * len(places) if isinstance(absorbers, Body) else check.several("absorbers", absorbers)
+        if len(bodies) != len(places):
+            raise ValueError(f"absorbers and places must be as many, got {len(bodies)} and {len(places)}; give one "
+                             "place per absorber")
+        return replace(self, absorbers=(*self.absorbers, *zip(bodies, places, strict=True)))
+
     def ss(
         self, *, at: Any, ports: Sequence[str] = ("y", "v", "a"), name: str = "bridge",
     ) -> ct.StateSpace:
-        """Give the empty bridge as a block with a vertical port at every given point (eqs. 5–8, 12).
+        """Give the bridge, without people, as a block with a vertical port at every given point (eqs. 5–8, 12).
 
         The outputs are ordered y[0], v[0], a[0], y[1], …, so that bodies put together by
         ``control.append`` close around it with ``control.feedback(plant, bodies, sign=+1)``.
@@ -415,7 +483,7 @@ class Footbridge:
         Returns
         -------
         control.StateSpace
-            Inputs F[i] [N]; outputs y[i], v[i], a[i]; states z[j], dz[j].
+            Inputs F[i] [N]; outputs y[i], v[i], a[i]; states z[j], dz[j], and u[k], du[k] of absorbers.
 
         Examples
         --------
@@ -424,16 +492,9 @@ class Footbridge:
         """
         ports = check.ports(ports)
         rows = self.participation(self.on_deck("at", check.points("at", at, least=1)))
-        n, n_m = rows.shape
-        zero, eye = np.zeros((n_m, n_m)), np.eye(n_m)
-        A = np.block([[zero, eye], [-np.diag(self.omega**2), -np.diag(2 * self.damping * self.omega)]])
-        B = np.vstack([np.zeros((n_m, n)), rows.T])
-        motion = np.stack([rows @ np.hstack([eye, zero]), rows @ np.hstack([zero, eye]), rows @ A[n_m:]], axis=1)
-        direct = np.stack([np.zeros((n, n)), np.zeros((n, n)), rows @ rows.T], axis=1)
-        kept = len(ports)
-        return ct.ss(A, B, motion[:, :kept].reshape(n * kept, -1), direct[:, :kept].reshape(n * kept, -1),
-                     inputs=labels("F", n), outputs=labels(ports, n),
-                     states=labels("z", n_m) + labels("dz", n_m), name=name)
+        bodies, places = self.fixed
+        own = self.participation(places, bodies.direction)
+        return block(self.omega, self.damping, rows, bodies, own, ports, name)
 
 
 def reference_bridge(*, frequency: float = 2.0, damping: float = 0.005, modal_mass: float = 25e3) -> Footbridge:
@@ -467,6 +528,18 @@ def _loaded(mode: Mode, mass: float) -> Mode:
     """A mode that carries an evenly spread mass."""
     modal_mass = mode.modal_mass + mass * mode.shape.mean_square
     return replace(mode, modal_mass=modal_mass, frequency=mode.frequency * float(np.sqrt(mode.modal_mass / modal_mass)))
+
+
+def _fixed(bridge: Footbridge, absorbers: Any) -> tuple[tuple[Body, tuple[float, float]], ...]:
+    remedy = "use with_absorbers(absorbers, at=...)"
+    pairs = check.instance("absorbers", absorbers, (list, tuple), remedy)
+    for pair in pairs:
+        if len(check.instance("absorbers", pair, tuple, remedy)) != 2:
+            raise ValueError(f"absorbers must be pairs of a body and its place, got {len(pair)} in one; {remedy}")
+    for body, _ in pairs:
+        check.instance("absorbers", body, Body, "give an Absorber, or a sequence of Absorber")
+    places = bridge.on_deck("absorbers", [place for _, place in pairs] or np.empty((0, 2)))
+    return tuple((body, (x, y)) for (body, _), (x, y) in zip(pairs, places.tolist(), strict=True))
 
 
 def _modes(modes: Any) -> tuple[Mode, ...]:

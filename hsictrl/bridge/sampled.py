@@ -95,6 +95,8 @@ class SampledShape(Shape):
 
     def derivative(self, x: ArrayLike, y: ArrayLike = 0.0, direction: Direction = "vertical", order: int = 1) -> Array:
         order = check.whole("order", order, least=0, remedy="give 0, 1 or 2")
+        if order > _DEGREE:
+            raise ValueError(f"order must be at most {_DEGREE}, the degree of the splines, got {order}; give 0, 1 or 2")
         spline = self._splines[check.choice("direction", direction, DIRECTIONS)]
         x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
         along = spline(np.clip(x, 0.0, self.length), nu=order)
@@ -171,7 +173,13 @@ def _checked_places(x: ArrayLike) -> Array:
 def _checked_lines(y: ArrayLike) -> Array:
     remedy = "give one or more lines of nodes, from one edge of the deck to the other"
     lines = check.numbers("y", y, ndim=1, count=1, remedy=remedy)
-    return check.increasing("y", lines, remedy=remedy) if len(lines) > 1 else lines
+    if len(lines) == 1:
+        return lines
+    check.increasing("y", lines, remedy=remedy)
+    if lines[0] > 0 or lines[-1] < 0:
+        raise ValueError(f"y must hold lines on both sides of the centre line, got {lines[0]:g} to {lines[-1]:g}; "
+                         "count it from the centre line")
+    return lines
 
 
 def _roots(spline: BSpline, column: int) -> Array:

@@ -7,25 +7,28 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
 
 from hsictrl import assessment
-from hsictrl.cli import options, tables
+from hsictrl.cli import options
+from hsictrl.cli.assessed import guide_rows, guide_table, notes, table
 from hsictrl.cli.description import Description
 from hsictrl.cli.endings import failing, refusing
-from hsictrl.cli.files import checked_figure, checked_ledger, whole_file
-from hsictrl.cli.outcome import Outcome, Rows, one_form
-from hsictrl.cli.tables import Column, estimate
+from hsictrl.cli.files import checked_figure, checked_ledger, checked_report, whole_file
+from hsictrl.cli.outcome import Outcome, one_form
 from hsictrl.cli.workers import checked_processes, workers
 from hsictrl.study import PercentileRule
 
+ASIDE = ("processes", "ledger", "resume", "figure", "as_json", "as_csv")    # options that change no digit of a report
+
 
 def assess(
+    context: typer.Context,
     file: options.File = None,
     frequency: options.Frequency = None,
     damping: options.Damping = None,
     modal_mass: options.ModalMass = None,
     density: options.Densities = None,
+    mode: options.Mode = 0,
     percentile: options.Percentile = 95.0,
     tolerance: options.Tolerance = 0.05,
     seed: options.Seed = None,
@@ -35,12 +38,16 @@ def assess(
     figure: Annotated[Path | None, typer.Option(
         metavar="FILE", help="Draw the flow with the largest acceleration: frequency responses, one history, "
                              "convergence.")] = None,
+    report: Annotated[Path | None, typer.Option(
+        metavar="FILE.html", help="Write all of it, with pictures, guides and assumptions, on one page that needs "
+                                  "nothing else.")] = None,
     as_json: options.AsJson = False,
     as_csv: options.AsCsv = False,
 ) -> None:
-    """Design accelerations and comfort classes, a row per density.
+    """Design accelerations and comfort classes, a row per density or traffic class.
 
-    Each without and with human-structure interaction, beside the effective frequency and damping of the bridge.
+    Each without and with human-structure interaction, beside the effective frequency and damping of the bridge, and
+    the load cases of HiVoSS and Sétra on every critical mode.
 
     \b
     A description; any of its tables may be left out:
@@ -53,38 +60,40 @@ def assess(
         frequency = 2.0               # Hz
         damping = 0.005               # a fraction
         [traffic]
-        density = [0.2, 1.0]          # persons/m²; or persons = 15
+        density = [0.2, 1.0]          # persons/m²; or persons = 15, or classes = ["TC2", "TC4"]
+        goal = "CL2"                  # worst comfort class that will do; or one per row
         [force]
         model = "zivanovic"           # or "young", or "harmonic" with factors = […]
 
-    Exit code: 0 when it worked, also where an estimate has not settled, which a remark below the table says;
-    1 when a trial failed; 2 for bad input; 130 when interrupted.
+    Exit code: 0 when it worked, also where an estimate has not settled or a goal is not met, which the table or a
+    remark below it says; 1 when a trial failed; 2 for bad input; 130 when interrupted.
     """
     with refusing():
         case = options.described(file, frequency=frequency, damping=damping, modal_mass=modal_mass, density=density,
                                  seed=seed)
+        quoted = "" if file is None else file.read_text(encoding="utf-8")
         rule = PercentileRule(percentile=percentile, tolerance=tolerance)
         one_form(as_json, as_csv)
         processes, book = checked_processes(processes), checked_ledger(ledger, resume)
         figure = None if figure is None else checked_figure(figure)
-        _rehearse(case)
+        report = None if report is None else checked_report(report)
+        for flow in case.flows:
+            assessment.check_assessable(case.bridge, flow, mode=mode)
     with failing(), workers(processes) as executor:
-        study = partial(assessment.assess, case.bridge, force=case.force, rule=rule, seed=case.seed, executor=executor,
-                        ledger=book)
-        found = [study(flow) for flow in case.flows]
+        study = partial(assessment.assess, case.bridge, force=case.force, rule=rule, mode=mode, seed=case.seed,
+                        executor=executor, ledger=book)
+        found = [study(flow, goal=goal) for flow, goal in case.aims]
     if figure is not None:
         _draw(figure, found, case)
-    rows = [one.to_dict() for one in found]
+    if report is not None:
+        _report(report, found, title="the reference bridge" if file is None else file.name, description=quoted,
+                command=options.as_typed(context, leave_out=ASIDE))
+    guides = guide_rows(found)
     Outcome(
-        description=case, settings={"percentile": percentile, "tolerance": tolerance, "confidence": rule.confidence},
-        rows=rows, table=_table(rows, rule), notes=_notes(case, rule, found),
+        description=case, rows=[one.to_dict() for one in found], table=table(found, rule),
+        settings={"percentile": percentile, "tolerance": tolerance, "confidence": rule.confidence, "mode": mode},
+        further={"guides": (guide_table(guides), guides)}, notes=notes(case, rule, found),
     ).show(as_json=as_json, as_csv=as_csv)
-
-
-def _rehearse(case: Description) -> None:
-    """Ask what refuses a flow once, before the long work."""
-    for flow in case.flows:
-        assessment.check_assessable(case.bridge, flow)
 
 
 def _draw(path: Path, found: list[assessment.Assessment], case: Description) -> None:
@@ -95,27 +104,9 @@ def _draw(path: Path, found: list[assessment.Assessment], case: Description) -> 
         draw(draft, largest, case)
 
 
-def _table(rows: Rows, rule: PercentileRule) -> Table:
-    accelerations = [Column(f"a{rule.percentile:g} {model}", "[m/s²]", estimate(
-        f"a_{model.lower()}", unit="_m_per_s2", trials=f"a_{model.lower()}_trials")) for model in ("MF", "PMC")]
-    return tables.table([
-        tables.FLOW,
-        Column("f_eff", "[Hz]", estimate("f_eff", unit="_hz", trials="effective_trials", digits=4)),
-        Column("ξ_eff", "[%]", estimate("xi_eff", trials="effective_trials", scale=100.0)),
-        *accelerations,
-        Column("R_HSI", "[-]", estimate("r_hsi")),
-        Column("comfort", "MF→PMC", lambda row: f"{row['class_mf']}→{row['class_pmc']}"),
-        Column("HiVoSS", "[m/s²]", lambda row: tables.significant(row["hivoss_m_per_s2"])),
-    ], rows)
+def _report(path: Path, found: list[assessment.Assessment], *, title: str, description: str, command: str) -> None:
+    from hsictrl.report import report_page  # only now: it loads matplotlib
 
-
-def _notes(case: Description, rule: PercentileRule, found: list[assessment.Assessment]) -> list[str]:
-    percentile = f"{rule.percentile:g}"
-    return [
-        *tables.case_notes(case),
-        f"a{percentile}: percentile {percentile} of the peak acceleration. f_eff, ξ_eff: means. "
-        f"{tables.interval_note(rule)}",
-        "MF: moving forces on the empty bridge, without interaction. PMC: moving forces on the bridge with a standing "
-        "crowd, with interaction.",
-        f"R_HSI: a{percentile} MF / a{percentile} PMC (eq. 18). HiVoSS: design acceleration of the guide.",
-        *(f"Remark on {one.flow}: {remark}." for one in found for remark in one.remarks)]
+    page = report_page(found, title=f"Assessment of {title}", description=description, command=command)
+    with whole_file(path) as draft:
+        draft.write_text(page, encoding="utf-8")

@@ -7,20 +7,19 @@ from itertools import product
 from pathlib import Path
 from typing import Any, cast
 
-import control as ct
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hsictrl import plots
 from hsictrl._progress import progress
-from hsictrl.assessment import Assessment, PeakTrial
+from hsictrl.assessment import Assessment
 from hsictrl.cli.crossing import Crossing
 from hsictrl.cli.description import Description
 from hsictrl.coupling import OccupiedBridge
-from hsictrl.resonance import effective, frf
-from hsictrl.study import Estimates, trial_rng
+from hsictrl.report.pictures import band_frf
+from hsictrl.resonance import effective
+from hsictrl.study import Estimates
 
-BAND, LINES = (0.5, 1.5), 2001   # of the empty bridge's frequency
 MULTIPLES = 4                    # of the step frequency, marked on a spectrum
 PANEL_TITLES: dict[str, Callable[[Any], str]] = {
     "density": lambda value: f"{value:.3g} /m²", "force": str,
@@ -29,11 +28,10 @@ PANEL_TITLES: dict[str, Callable[[Any], str]] = {
 
 def draw(path: Path, found: Assessment, case: Description) -> None:
     """Draw one assessment, with the frequency responses and histories of its first trial, into a file."""
-    trials = [PeakTrial(model=model, bridge=found.bridge, flow=found.flow, force=case.force) for model in ("MF", "PMC")]
-    first = [trial.prediction(trial_rng(case.seed, 0)) for trial in trials]
+    first = [found.prediction(model) for model in ("MF", "PMC")]
     systems = [cast(OccupiedBridge, one.system) for one in first]     # neither model is MC
     plot = plots.assessment_figure(
-        frfs=[_frf(system) for system in systems], effective=[effective(system) for system in systems],
+        frfs=[band_frf(system) for system in systems], effective=[effective(system) for system in systems],
         responses=[one.response for one in first], ensembles=[found.mf, found.pmc],
         title=f"{found.flow} on {str(case.bridge).splitlines()[0]}; (a), (b): trial 0 of seed {case.seed}")
     plots.save(plot, path)
@@ -62,10 +60,6 @@ def _marks(crossing: Crossing) -> dict[str, ArrayLike]:
     return {rf"multiples of $f_l$ = {step:.3f} Hz": step * np.arange(1, MULTIPLES + 1),
             rf"$f_\mathrm{{B}}$ = {empty:.3f} Hz": empty,
             rf"$f_\mathrm{{eff}}$ = {crossing.standing.frequency:.3f} Hz": crossing.standing.frequency}
-
-
-def _frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
-    return frf(system, system.bridge.modes[0].frequency * np.linspace(*BAND, LINES))
 
 
 def draw_maps(path: Path, found: Estimates, quantity: str) -> None:

@@ -28,6 +28,11 @@ def checked_figure(path: Path) -> Path:
     return _checked_file("a figure", path, file_endings())
 
 
+def checked_report(path: Path) -> Path:
+    """Return the path if a report can be written there."""
+    return _checked_file("a report", path, ("html",))
+
+
 def checked_animation(path: Path) -> Path:
     """Return the path if an animation can be written there."""
     from hsictrl.plots import animation_endings

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -24,6 +26,8 @@ Densities = Annotated[list[float] | None, typer.Option(
                                         "[default: 0.2, 0.5, 0.8, 1.0, 1.5].")]
 Density = Annotated[list[float] | None, typer.Option(
     "--density", metavar="PER_M2", help="Persons/m², in place of FILE's [default: 1.0].")]
+Mode = Annotated[int, typer.Option(
+    metavar="INDEX", help="Mode that is brought into resonance, counted from 0.")]
 Percentile = Annotated[float, typer.Option(
     metavar="PERCENT", help="Percentile of the peak acceleration that is the design value.")]
 Tolerance = Annotated[float, typer.Option(
@@ -52,3 +56,15 @@ def described(
     found = Description(bridge=reference_bridge(**given)) if file is None else read_description(file)
     found = found.at_densities(density) if density else found
     return found if seed is None else replace(found, seed=seed)
+
+
+def as_typed(context: typer.Context, *, leave_out: Iterable[str]) -> str:
+    """The command with those of its words that were typed, but for some options."""
+    words = context.command_path.split()
+    for one in context.command.params:
+        source = context.get_parameter_source(one.name or "")
+        if source is not None and source.name == "COMMANDLINE" and one.name not in leave_out:
+            value = context.params[one.name]
+            flag = [one.opts[0]] if one.param_type_name == "option" else []
+            words += [word for each in (value if isinstance(value, list) else [value]) for word in (*flag, str(each))]
+    return shlex.join(words)

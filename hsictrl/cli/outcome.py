@@ -6,8 +6,8 @@ import csv
 import json
 import math
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, final
 
 from rich.console import Console
@@ -38,6 +38,8 @@ class Outcome:
         The same for reading.
     notes : sequence of str
         Lines below the table.
+    further : mapping of str to (rich.table.Table, list of dict)
+        Further tables and their rows, by their keys in JSON; CSV leaves them out.
     """
 
     description: Description
@@ -45,16 +47,17 @@ class Outcome:
     rows: Rows
     table: Table
     notes: Sequence[str]
+    further: Mapping[str, tuple[Table, Rows]] = field(default_factory=dict)
 
     def show(self, *, as_json: bool, as_csv: bool) -> None:
         """Print JSON, CSV or the table."""
         if as_json:
             print_json({"bridge": bridge_document(self.description.bridge), "settings": self._settings(),
-                        "rows": self.rows})
+                        "rows": self.rows, **{key: rows for key, (_, rows) in self.further.items()}})
         elif as_csv:
             print_csv(self.rows)
         else:
-            print_table(self.table, self.notes)
+            print_table(self.table, self.notes, further=[table for table, rows in self.further.values() if rows])
 
     def _settings(self) -> dict[str, Any]:
         return {**self.settings, "seed": self.description.seed, "force": repr(self.description.force),
@@ -84,10 +87,12 @@ def print_csv(rows: Rows) -> None:
     writer.writerows(_plain(rows))
 
 
-def print_table(table: Table, notes: Sequence[str]) -> None:
-    """Print a table as wide as the terminal, and what there is to say about it."""
+def print_table(table: Table, notes: Sequence[str], *, further: Sequence[Table] = ()) -> None:
+    """Print a table as wide as the terminal, further ones below it, and what there is to say about them."""
     console = Console(width=None if sys.stdout.isatty() else PIPED_WIDTH, highlight=False, markup=False)
     console.print(table)
+    for one in further:
+        console.print("", one, sep="\n")
     console.print("", *notes, sep="\n")
 
 
@@ -103,4 +108,7 @@ def bridge_document(bridge: Footbridge) -> dict[str, Any]:
     """A bridge for JSON, units in the keys."""
     modes = [{"frequency_hz": mode.frequency, "damping": mode.damping, "modal_mass_kg": mode.modal_mass}
              for mode in bridge.modes]
-    return {"length_m": bridge.length, "width_m": bridge.width, "mass_kg": bridge.mass, "modes": modes}
+    document = {"length_m": bridge.length, "width_m": bridge.width, "mass_kg": bridge.mass, "modes": modes}
+    absorbers = [{"mass_kg": body.mass, "frequency_hz": body.frequency, "damping": body.damping,
+                  "direction": body.direction, "x_m": x, "y_m": y} for body, (x, y) in bridge.absorbers]
+    return document | ({"absorbers": absorbers} if absorbers else {})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar, final
@@ -45,6 +45,9 @@ WHOLE = Expected("a whole number", "2", _whole)
 TEXT = Expected("a word in quotes", '"word"', _text)
 FILE = Expected("a path in quotes", '"nodes.csv"', _text)
 TABLE = Expected("a table", "[name]", lambda value: isinstance(value, dict))
+TABLES = Expected("a list of tables", "[[name]]", lambda value: _all(value, lambda one: isinstance(one, dict)))
+PLACE = Expected("a place x or [x, y]", "[25.0, 0.5]",
+                 lambda value: _number(value) or (_all(value, _number) and len(value) == 2))
 NUMBERS = Expected("a list of numbers", "[20.0, 30.0]", lambda value: _all(value, _number))
 WORDS = Expected("a word in quotes or a list of them", '["one", "other"]',
                  lambda value: _text(value) or _all(value, _text))
@@ -96,6 +99,15 @@ class Table:
     def table(self, key: str) -> Table:
         """A table within this one."""
         return Table(path=self.path, text=self.text, names=(*self.names, key), values=self.values[key])
+
+    def tables(self, key: str) -> Iterator[Table]:
+        """The tables of a list within this one; each knows the document from its own header on."""
+        lines = self.text.splitlines()
+        headers = [number for number, line in enumerate(lines) if _opens(line, *self.names, key)]
+        for i, values in enumerate(self.values[key]):
+            first = headers[i] if i < len(headers) else 0
+            text = "\n".join([""] * first + lines[first:])
+            yield Table(path=self.path, text=text, names=(*self.names, key), values=values)
 
     def read(self, keys: Keys, *, needs: Iterable[str] = ()) -> dict[str, Any]:
         """The values, having checked that every key is known, none is missing, and each is of its type."""
@@ -153,6 +165,11 @@ def line_of(text: str, *names: str) -> int | None:
         if found[:len(names)] == list(names):
             return number
     return None
+
+
+def _opens(line: str, *names: str) -> bool:
+    header = HEADER.match(line)
+    return header is not None and _parts(header[1]) == list(names)
 
 
 def _parts(dotted: str) -> list[str]:

@@ -10,13 +10,14 @@ from rich.table import Table
 
 from hsictrl import _checks as check
 from hsictrl import assessment
+from hsictrl._digits import significant
 from hsictrl.cli import options, tables
 from hsictrl.cli.crossing import Crossing
 from hsictrl.cli.description import Description
 from hsictrl.cli.endings import failing, refusing
 from hsictrl.cli.files import checked_animation, checked_figure, whole_file
 from hsictrl.cli.outcome import Outcome, Rows, one_form
-from hsictrl.cli.tables import Column, significant
+from hsictrl.cli.tables import Column
 
 DENSITY = 1.0   # persons/m², where neither a file nor an option says
 

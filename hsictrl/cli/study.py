@@ -100,7 +100,7 @@ class Study:
         Returns
         -------
         PeaksTrial or JointTrial
-            The latter if a model is among them for which bridges share nothing.
+            The latter if a model, or an absorber, is among them for which bridges share nothing.
 
         Examples
         --------
@@ -110,7 +110,7 @@ class Study:
         0.5
         """
         bridges, flow, walking = self.bridges(frequency), self.flows[density], self.forces[force]
-        if {*self.model} <= {*SHARED_MODELS}:
+        if {*self.model} <= {*SHARED_MODELS} and not self.case.bridge.absorbers:
             return PeaksTrial(models=self.model, bridges=bridges, flow=flow, force=walking)
         return JointTrial([PeakTrial(model=model, bridge=bridge, flow=flow, force=walking)
                            for model in self.model for bridge in bridges])
@@ -167,6 +167,11 @@ def _check_case(top: Table, case: Description) -> None:
     if case.bridge.n_modes != 1:
         top.table("bridge").refuse("n_modes", f"the bridge of a sweep must have one mode, got {case.bridge.n_modes}; "
                                               "leave n_modes out, or use 'hsictrl assess'")
+    densities = [flow.density_on(case.bridge) for flow in case.flows]
+    if len(set(densities)) < len(densities):
+        told = ", ".join(f"{one:g}" for one in densities)
+        top.table("traffic").refuse("persons", f"the flows of a sweep must differ in density, got {told} persons/m²; "
+                                               "leave one out")
     step = case.flows[0].step_frequency
     if step is not None:
         top.table("traffic").refuse("step_frequency", "the steps of a sweep must be tuned to each bridge, got "

@@ -10,6 +10,7 @@ from rich import box
 from rich.console import JustifyMethod
 from rich.table import Table
 
+from hsictrl._digits import significant
 from hsictrl.cli.description import Description
 from hsictrl.study import MeanRule, PercentileRule
 
@@ -25,17 +26,6 @@ class Column:
     unit: str
     cell: Callable[[Row], str]
     justify: JustifyMethod = "right"
-
-
-def significant(value: float, digits: int = 3) -> str:
-    """A number to so many significant digits, trailing zeros kept.
-
-    Examples
-    --------
-    >>> significant(2.0), significant(16.512), significant(120.4), significant(1.94327, 4)
-    ('2.00', '16.5', '120', '1.943')
-    """
-    return f"{value:#.{digits}g}".rstrip(".")
 
 
 def estimate(name: str, *, unit: str = "", trials: str = "", digits: int = 3, scale: float = 1.0,
@@ -58,7 +48,12 @@ def table(columns: Sequence[Column], rows: Sequence[Row]) -> Table:
     return drawn
 
 
-FLOW = Column("d", "[1/m²]", lambda row: f"{row['density_per_m2']:.3g}\nn={row['persons']}")
+def _flow(row: Row) -> str:
+    words = [row.get("traffic_class"), f"{row['density_per_m2']:.3g}", f"n={row['persons']}"]
+    return "\n".join(filter(None, words))
+
+
+FLOW = Column("d", "[1/m²]", _flow)
 
 
 def case_notes(case: Description) -> list[str]:

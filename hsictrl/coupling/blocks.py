@@ -16,10 +16,11 @@ def blocks_of(
     bridge: Footbridge, people: Crowd, rows: Array, drive: Array, inputs: Sequence[str],
 ) -> list[ct.StateSpace]:
     """Blocks whose signals meet by name: z[j], dz[j], ddz[j] of the modes, and contact force p[k] of the bodies."""
-    contacts = [f"p[{k}]" for k in range(len(people))]
+    contacts, n_fixed = [f"p[{k}]" for k in range(len(people))], len(bridge.absorbers)
+    names = [f"absorber{k}" if k < n_fixed else f"walker{k - n_fixed}" for k in range(len(people))]
     modes = [_mode_block(bridge, j, np.concatenate([drive[:, j], rows[:, j]]), [*inputs, *contacts])
              for j in range(bridge.n_modes)]
-    return modes + [_walker_block(people, k, row) for k, row in enumerate(rows)]
+    return modes + [_body_block(people, k, row, name) for k, (row, name) in enumerate(zip(rows, names, strict=True))]
 
 
 def _mode_block(bridge: Footbridge, j: int, shares: Array, inputs: list[str]) -> ct.StateSpace:
@@ -29,9 +30,9 @@ def _mode_block(bridge: Footbridge, j: int, shares: Array, inputs: list[str]) ->
                  outputs=[f"z[{j}]", f"dz[{j}]", f"ddz[{j}]"], states=mode.state_labels)
 
 
-def _walker_block(people: Crowd, k: int, row: Array) -> ct.StateSpace:
+def _body_block(people: Crowd, k: int, row: Array, name: str) -> ct.StateSpace:
     """A body that feels all modes by their shapes where it stands."""
     body = people[k].ss()
     inputs = [f"{port}[{j}]" for port in ("z", "dz", "ddz") for j in range(len(row))]
     return ct.ss(body.A, np.kron(body.B, row), body.C, np.kron(body.D, row), inputs=inputs,
-                 outputs=[f"p[{k}]"], states=body.state_labels, name=f"walker{k}")
+                 outputs=[f"p[{k}]"], states=body.state_labels, name=name)

@@ -39,6 +39,8 @@ class OccupiedMeasurement(ct.FrequencyResponseData):
     ----------
     first_point : array, shape (w,)
         Accelerance at the first measured point, to which the modal mass refers [m/s² per N].
+    apparent_mass : array, shape (w, p)
+        Apparent mass Σα(iω) of those who stand at each measured point [kg].
 
     Examples
     --------
@@ -60,7 +62,8 @@ class OccupiedMeasurement(ct.FrequencyResponseData):
     ) -> None:
         self.bridge, self.people, self.positions = bridge, people, positions
         drive, sense = _points(bridge, "force_at", force_at), _points(bridge, "sense_at", sense_at)
-        closed = _closed_loop(bridge, people, bridge.points_of("positions", positions))
+        self.apparent_mass = _apparent_mass(bridge, people, bridge.points_of("positions", positions))
+        closed = _closed_loop(bridge, self.apparent_mass)
         self.first_point = closed[:, 0, 0]
         super().__init__(
             np.moveaxis(closed[:, sense][:, :, drive], 0, -1), bridge.response.omega, name=name,
@@ -72,13 +75,17 @@ def _points(bridge: MeasuredBridge, name: str, places: Any) -> NDArray[np.intp]:
     return bridge.points_of(name, check.points(name, bridge.positions[:1] if places is None else places, least=1))
 
 
-def _closed_loop(bridge: MeasuredBridge, people: Crowd, points: NDArray[np.intp]) -> NDArray[np.complex128]:
-    """Accelerance of the occupied bridge between all points, shape (w, p, p)."""
-    n_points = len(bridge.positions)
+def _apparent_mass(bridge: MeasuredBridge, people: Crowd, points: NDArray[np.intp]) -> NDArray[np.complex128]:
+    """Apparent mass at every measured point, shape (w, p)."""
     s = 1j * bridge.response.omega
-    mass = np.zeros((len(s), n_points), dtype=complex)
+    mass = np.zeros((len(s), len(bridge.positions)), dtype=complex)
     for body, point in zip(people, points, strict=True):
         if body.direction == bridge.direction:
             mass[:, point] += body.apparent_mass(s)
+    return mass
+
+
+def _closed_loop(bridge: MeasuredBridge, mass: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Accelerance of the occupied bridge between all points, shape (w, p, p)."""
     empty = np.moveaxis(bridge.response.frdata, -1, 0)
-    return np.linalg.solve(np.eye(n_points) + empty * mass[:, None, :], empty)
+    return np.linalg.solve(np.eye(mass.shape[1]) + empty * mass[:, None, :], empty)

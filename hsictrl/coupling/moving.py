@@ -15,6 +15,7 @@ from hsictrl._names import labels
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling.occupied import OccupiedBridge, couple
 from hsictrl.crowd import Traffic
+from hsictrl.pedestrian import Crowd
 
 
 def moving_crowd(bridge: Footbridge, traffic: Traffic, *, convective: bool = False) -> MovingCrowd:
@@ -33,6 +34,11 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic, *, convective: bool = Fal
     -------
     MovingCrowd
 
+    Raises
+    ------
+    ValueError
+        If a trajectory leaves the deck, or convective terms are asked for where somebody follows a trajectory.
+
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
@@ -46,6 +52,10 @@ def moving_crowd(bridge: Footbridge, traffic: Traffic, *, convective: bool = Fal
     check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
     check.instance("traffic", traffic, Traffic, "draw it with CrowdFlow.sample, or make it with Traffic([walker])")
     check.instance("convective", convective, bool, "give True or False")
+    if convective and traffic.walkers.trajectories:
+        raise ValueError("convective terms need walkers who go straight on, got some who follow a trajectory; leave "
+                         "these terms out")
+    traffic.walkers.carried(bridge)     # refuses trajectories that leave the deck
     return MovingCrowd(bridge=bridge, traffic=traffic, convective=convective)
 
 
@@ -56,6 +66,7 @@ class MovingCrowd:
 
     Velocities and accelerations of a contact point are partial derivatives in time, as in (A.1). With convective
     terms they are the derivatives of y(t) = φ(vt)·z(t): ẏ = φ·ż + v φ′·z and ÿ = φ·z̈ + 2v φ′·ż + v² φ″·z.
+    Absorbers of the bridge are bodies that stay where they are.
 
     Parameters
     ----------
@@ -86,7 +97,7 @@ class MovingCrowd:
 
     @property
     def nstates(self) -> int:
-        """Order 2(n_m + n_H) of the system, everybody in the traffic counted [-].
+        """Order 2(n_m + n_H) of the system, everybody in the traffic and every absorber counted [-].
 
         Examples
         --------
@@ -97,10 +108,15 @@ class MovingCrowd:
         >>> moving_crowd(reference_bridge(), Traffic([walker])).nstates
         4
         """
-        return 2 * (self.bridge.n_modes + len(self.traffic.walkers))
+        return 2 * (self.bridge.n_modes + len(self.bodies))
+
+    @property
+    def bodies(self) -> Crowd:
+        """Absorbers of the bridge, and then everybody in the traffic."""
+        return self.bridge.fixed[0] + self.traffic.walkers.bodies
 
     def rows(self, time: float) -> Array:
-        """Participation of every walker in the modes at an instant, zero for those off the deck.
+        """Participation of every body in the modes at an instant, zero for walkers off the deck.
 
         Parameters
         ----------
@@ -110,7 +126,7 @@ class MovingCrowd:
         Returns
         -------
         array, shape (n, n_m)
-            Rows of Φ [1/√kg].
+            Rows of Φ, those of the bridge's absorbers first [1/√kg].
 
         Examples
         --------
@@ -121,7 +137,12 @@ class MovingCrowd:
         >>> moving_crowd(reference_bridge(), Traffic([walker])).rows(-1.0)
         array([[0.]])
         """
-        return self.bridge.participation(self.traffic.walkers.places(time), self.traffic.walkers.bodies.direction)
+        walkers = self.traffic.walkers
+        moving = self.bridge.participation(walkers.places(time), walkers.bodies.direction)
+        if not self.bridge.absorbers:
+            return moving
+        bodies, places = self.bridge.fixed
+        return np.vstack([self.bridge.participation(places, bodies.direction), moving])
 
     def row_rates(self, time: float, order: int) -> Array:
         """Derivatives of `rows` in time that convective terms take; zero where these are left out.
@@ -151,11 +172,12 @@ class MovingCrowd:
         order = check.whole("order", order, least=0, remedy="give 0, 1 or 2")
         if order == 0:
             return self.rows(time)
-        walkers, n_m = self.traffic.walkers, self.bridge.n_modes
-        if not self.convective:
-            return np.zeros((len(walkers), n_m))
-        return walkers.speed[:, None]**order * self.bridge.participation(
-            walkers.places(time), walkers.bodies.direction, order)
+        walkers, n_fixed = self.traffic.walkers, len(self.bridge.absorbers)
+        rates = np.zeros((n_fixed + len(walkers), self.bridge.n_modes))
+        if self.convective:
+            rates[n_fixed:] = walkers.speed[:, None]**order * self.bridge.participation(
+                walkers.places(time), walkers.bodies.direction, order)
+        return rates
 
     def at(self, time: float, *, force_at: Any = None, sense_at: Any = None) -> OccupiedBridge:
         """The system of one instant, as if everybody on the deck stood still.
@@ -217,7 +239,7 @@ class MovingCrowd:
         """
         empty = couple(self.bridge, force_at=force_at, sense_at=sense_at)
         drive, sense = (self.bridge.participation(points) for points in (empty.force_at, empty.sense_at))
-        rates, n_m, n = _rates(self, drive), self.bridge.n_modes, len(self.traffic.walkers)
+        rates, n_m, n = _rates(self, drive), self.bridge.n_modes, len(self.bodies)
         sizes = {"z": n_m, "u": n, "dz": n_m, "du": n}
         return ct.nlsys(
             lambda t, x, u, params: np.concatenate([x[n_m + n:], rates(t, x, u)]),
@@ -229,10 +251,10 @@ class MovingCrowd:
 def _rates(crowd: MovingCrowd, drive: Array) -> Callable[[float, Array, Array], Array]:
     """Accelerations of modes and bodies (A.3, A.4) as a function of time, state and further forces."""
     bridge, walkers = crowd.bridge, crowd.traffic.walkers
-    people, lines = walkers.bodies, walkers.lines()
-    n_m, n = bridge.n_modes, len(people)
+    people, lines = crowd.bodies, walkers.lines()
+    n_m, n, n_fixed = bridge.n_modes, len(people), len(bridge.absorbers)
     gamma, square = 2 * bridge.damping * bridge.omega, bridge.omega**2
-    vertical = bool(np.all(people.direction == "vertical"))
+    vertical = bool(np.all(walkers.bodies.direction == "vertical"))
 
     def rates(t: float, x: Array, further: Array) -> Array:
         z, u, dz, du = np.split(x, [n_m, n_m + n, 2 * n_m + n])
@@ -243,8 +265,8 @@ def _rates(crowd: MovingCrowd, drive: Array) -> Callable[[float, Array, Array], 
             along, bend = crowd.row_rates(t, 1), crowd.row_rates(t, 2)
             pull = pull - people.damping_coefficient * (along @ z)
             contact = pull - people.unsprung_mass * (2 * along @ dz + bend @ z)
-        upright = rows if vertical else bridge.participation(walkers.places(t))     # forces are vertical
-        modal = rows.T @ contact + upright.T @ _walking_forces(lines, n, t) + drive.T @ np.atleast_1d(further)
+        upright = rows[n_fixed:] if vertical else bridge.participation(walkers.places(t))     # forces are vertical
+        modal = rows.T @ contact + upright.T @ _walking_forces(lines, n - n_fixed, t) + drive.T @ np.atleast_1d(further)
         mass = np.eye(n_m) + rows.T * people.unsprung_mass @ rows
         return np.concatenate([np.linalg.solve(mass, modal - gamma * dz - square * z), -pull / people.sprung_mass])
 

@@ -17,23 +17,23 @@ from hsictrl.coupling.blocks import blocks_of
 from hsictrl.coupling.condensation import CondensedCrowd
 from hsictrl.coupling.interconnection import interconnect
 from hsictrl.coupling.measurement import OccupiedMeasurement
-from hsictrl.pedestrian import Crowd, Pedestrian
+from hsictrl.pedestrian import Body, Crowd
 
 Complex = NDArray[np.complex128]
 
 
 @overload
 def couple(
-    bridge: Footbridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = ..., positions: Any = ...,
+    bridge: Footbridge, people: Crowd | Body | Sequence[Body] = ..., positions: Any = ...,
     *, force_at: Any = ..., sense_at: Any = ..., name: str = ...,
 ) -> OccupiedBridge: ...
 @overload
 def couple(
-    bridge: MeasuredBridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = ..., positions: Any = ...,
+    bridge: MeasuredBridge, people: Crowd | Body | Sequence[Body] = ..., positions: Any = ...,
     *, force_at: Any = ..., sense_at: Any = ..., name: str = ...,
 ) -> OccupiedMeasurement: ...
 def couple(
-    bridge: Footbridge | MeasuredBridge, people: Crowd | Pedestrian | Sequence[Pedestrian] = (), positions: Any = (),
+    bridge: Footbridge | MeasuredBridge, people: Crowd | Body | Sequence[Body] = (), positions: Any = (),
     *, force_at: Any = None, sense_at: Any = None, name: str = "occupied",
 ) -> OccupiedBridge | OccupiedMeasurement:
     """Put people on a bridge and close the loop, exactly (A.7–A.10).
@@ -42,8 +42,9 @@ def couple(
     ----------
     bridge : Footbridge or MeasuredBridge
         The empty bridge.
-    people : Crowd, Pedestrian or sequence of Pedestrian
-        One body per position, or one body that stands at all of them; nobody by default.
+    people : Crowd, Pedestrian, Absorber, or sequence of these bodies
+        One body per position, or one body that stands at all of them; nobody by default. Absorbers of the bridge
+        itself come first.
     positions : array_like, shape (n,) or (n, 2)
         Places x, or (x, y), on the deck [m].
     force_at, sense_at : array_like, shape (p,) or (p, 2), optional
@@ -66,6 +67,7 @@ def couple(
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.pedestrian import Pedestrian
     >>> occupied = couple(reference_bridge(frequency=2.0), Pedestrian(), np.linspace(0, 50, 15))
     >>> occupied.nstates, occupied.input_labels, occupied.output_labels
     (32, ['F[0]'], ['a[0]'])
@@ -79,6 +81,9 @@ def couple(
     crowd = _crowd(people, len(places))
     if isinstance(bridge, MeasuredBridge):
         return OccupiedMeasurement(bridge, crowd, places, force_at=force_at, sense_at=sense_at, name=name)
+    if bridge.absorbers:
+        fixed, there = bridge.fixed
+        crowd, places = fixed + crowd, np.vstack([there, bridge.on_deck("positions", places)])
     return OccupiedBridge(bridge, crowd, places, force_at=force_at, sense_at=sense_at, name=name)
 
 
@@ -95,7 +100,7 @@ class OccupiedBridge(ct.StateSpace):
     bridge : Footbridge
         The empty bridge.
     people : Crowd
-        The n bodies.
+        The n bodies, absorbers of the bridge first.
     positions : array, shape (n, 2)
         Where they stand [m].
     force_at, sense_at : array_like, optional
@@ -106,6 +111,7 @@ class OccupiedBridge(ct.StateSpace):
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.pedestrian import Pedestrian
     >>> print(couple(reference_bridge(frequency=2.0), Pedestrian(), [20.0, 30.0]))
     <OccupiedBridge> occupied: 2 bodies, 140 kg, 3.25–3.25 Hz, 30–30 %
     on footbridge 50 m × 3 m, 50000 kg
@@ -226,6 +232,39 @@ class OccupiedBridge(ct.StateSpace):
         ordinary = np.abs(s)**2 * (1 + mass) + self.bridge.omega.max()**2
         return np.asarray(np.abs(stiffness).max(axis=(1, 2)) > 1e4 * ordinary)
 
+    def zeros(self) -> Complex:
+        """Zeros from force to acceleration; the host's plots choose their frequencies by poles and zeros.
+
+        A constant force accelerates nothing: two zeros per port lie at the origin, where rounding would leave them
+        at random tiny frequencies. With a port for each mode the rest are the poles of the bodies, each of which
+        holds the deck still under itself.
+
+        Returns
+        -------
+        array of complex
+            Zeros [rad/s].
+
+        Raises
+        ------
+        NotImplementedError
+            By the host, for more inputs than outputs, or fewer, with more modes than either.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.pedestrian import Pedestrian
+        >>> couple(reference_bridge(frequency=2.0), Pedestrian(), [25.0]).zeros().round(3)
+        array([ 0.   +0.j  ,  0.   +0.j  , -6.126+19.48j, -6.126-19.48j])
+        """
+        ports = min(np.linalg.matrix_rank(shapes) for shapes in (self._drive, self._sense))
+        if ports == self.bridge.n_modes:
+            people = self.people
+            poles = people.omega * (-people.damping + 1j * np.sqrt(1 - people.damping**2))
+            return np.concatenate([np.zeros(2 * ports), poles, poles.conj()])
+        found = np.asarray(super().zeros())
+        found[np.argsort(np.abs(found))[:2 * ports]] = 0
+        return found
+
     def respond(self, s: Complex, modal_forces: Any) -> Complex:
         """Accelerations under modal forces, in the Laplace domain: a crowd's forces move, but act through few modes.
 
@@ -256,12 +295,13 @@ class OccupiedBridge(ct.StateSpace):
         Returns
         -------
         control.LinearICSystem
-            With blocks mode0, mode1, … and walker0, walker1, …; its `connection_table` shows who
+            With blocks mode0, mode1, …, absorber0, … and walker0, walker1, …; its `connection_table` shows who
             is joined to whom.
 
         Examples
         --------
         >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.pedestrian import Pedestrian
         >>> blocks = couple(reference_bridge(frequency=2.0), Pedestrian(), [25.0]).interconnected()
         >>> [block.name for block in blocks.syslist]
         ['mode0', 'walker0']
@@ -299,7 +339,7 @@ def _rebuild(
 
 def _crowd(people: Any, n: int) -> Crowd:
     remedy = "give a Crowd, a Pedestrian or a sequence of Pedestrian"
-    if isinstance(people, Pedestrian):
+    if isinstance(people, Body):
         return Crowd.of([people] * n)
     if not isinstance(people, Crowd):
         people = Crowd.of(check.instance("people", people, Sequence, remedy))

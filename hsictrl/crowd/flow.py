@@ -11,8 +11,10 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._draws import truncated_normal
 from hsictrl.bridge import Footbridge
+from hsictrl.crowd.classes import TRAFFIC_CLASSES
 from hsictrl.crowd.traffic import Traffic
-from hsictrl.crowd.walkers import BY_HAND, Walkers
+from hsictrl.crowd.walker import BY_HAND
+from hsictrl.crowd.walkers import Walkers
 from hsictrl.pedestrian import Crowd, Population
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
@@ -85,6 +87,8 @@ class CrowdFlow:
         Pedestrian density d, in (0, 5.4) [1/m²].
     persons : int, optional
         Number of people on the deck, in place of a density [-].
+    traffic_class : {"TC1", "TC2", "TC3", "TC4", "TC5"}, optional
+        Traffic class of HiVoSS, in place of a density: 15 persons on the deck, 0.2, 0.5, 1.0, 1.5 persons/m².
     speed : float, optional
         Walking speed, in place of Weidmann's for the density [m/s].
     step_frequency : float or (float, float), optional
@@ -101,23 +105,30 @@ class CrowdFlow:
     >>> traffic = CrowdFlow(persons=15).sample(reference_bridge(), rng=np.random.default_rng(1))
     >>> traffic.target, traffic.walkers.speed[0].round(2)
     (2.0, np.float64(1.34))
+    >>> print(CrowdFlow(traffic_class="TC3"))
+    TC3, 0.5 persons/m²
     """
 
     density: float | None = None
     persons: int | None = None
+    traffic_class: str | None = None
     speed: float | None = None
     step_frequency: float | tuple[float, float] | None = None
     weight: float = 700.0
     population: Population = field(default_factory=Population.walking)
 
     def __post_init__(self) -> None:
-        if (self.density is None) == (self.persons is None):
-            raise ValueError(f"a flow must have either a density or a number of persons, got density={self.density} "
-                             f"and persons={self.persons}; give one of them")
+        amounts = {name: getattr(self, name) for name in ("density", "persons", "traffic_class")}
+        given = [f"{name}={value!r}" for name, value in amounts.items() if value is not None]
+        if len(given) != 1:
+            raise ValueError("a flow must have a density, or a number of persons, or a traffic_class, got "
+                             f"{' and '.join(given) or 'none'}; give one of them")
         if self.density is not None:
             weidmann_speed(self.density)
-        else:
+        elif self.persons is not None:
             check.whole("persons", self.persons, least=1, remedy="give the number of people on the deck")
+        else:
+            check.choice("traffic_class", self.traffic_class, tuple(TRAFFIC_CLASSES))
         if self.speed is not None:
             check.number("speed", self.speed, above=0, most=10, remedy="give m/s, at most 10")
         if self.step_frequency is not None:
@@ -126,7 +137,14 @@ class CrowdFlow:
         check.instance("population", self.population, Population, "use Population.walking()")
 
     def __str__(self) -> str:
-        return f"{self.density:g} persons/m²" if self.density is not None else f"{self.persons} persons"
+        density, persons = self._amount
+        amount = f"{density:g} persons/m²" if density is not None else f"{persons} persons"
+        return f"{self.traffic_class}, {amount}" if self.traffic_class else amount
+
+    @property
+    def _amount(self) -> tuple[float | None, int | None]:
+        """Density or persons, whichever is given."""
+        return TRAFFIC_CLASSES[self.traffic_class] if self.traffic_class else (self.density, self.persons)
 
     def density_on(self, bridge: Footbridge) -> float:
         """Pedestrian density on a bridge.
@@ -148,10 +166,11 @@ class CrowdFlow:
         0.1
         """
         check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
-        if self.density is not None:
-            return self.density
-        assert self.persons is not None
-        return self.persons / bridge.area
+        density, persons = self._amount
+        if density is not None:
+            return density
+        assert persons is not None
+        return persons / bridge.area
 
     def persons_on(self, bridge: Footbridge) -> int:
         """Mean number of people on the deck, n_H = A d, rounded.

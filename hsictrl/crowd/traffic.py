@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, InitVar, dataclass, replace
+from dataclasses import KW_ONLY, InitVar, dataclass, fields, replace
+from pathlib import Path
 from typing import Any, final
 
 import numpy as np
@@ -13,8 +14,11 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._draws import retuned
 from hsictrl.bridge import Footbridge
-from hsictrl.crowd.walkers import Walker, Walkers
-from hsictrl.pedestrian import Crowd
+from hsictrl.crowd import recorded, recording, saving
+from hsictrl.crowd.walker import Walker
+from hsictrl.crowd.walkers import Walkers
+from hsictrl.pedestrian import Crowd, Population
+from hsictrl.walking import WalkingForce, ZivanovicForce
 
 WALKING_RANGE = (1.0, 2.5)
 
@@ -22,7 +26,7 @@ WALKING_RANGE = (1.0, 2.5)
 @final
 @dataclass(frozen=True, slots=True, eq=False)
 class Traffic:
-    """Walkers on their way over the bridge, drawn by `CrowdFlow.sample` or made by hand.
+    """Walkers on their way over the bridge: drawn by `CrowdFlow.sample`, recorded, or made by hand.
 
     Parameters
     ----------
@@ -71,6 +75,141 @@ class Traffic:
             spread=check.number("spread", self.spread, least=0, remedy="give Hz, 0 for none"))
         if self.drawn_from is not None:
             check.number("drawn_from", self.drawn_from, remedy="give s")
+
+    @classmethod
+    def from_trajectories(
+        cls, table: Any, bridge: Footbridge, *, rng: np.random.Generator, origin: tuple[float, float] = (0.0, 0.0),
+        angle: float = 0.0, frame_rate: float | None = None, step_frequency: float | str | None = None,
+        still: float = 0.2, force: WalkingForce | None = None, population: Population | None = None,
+        standing_population: Population | None = None, weight: float = 700.0,
+        window: tuple[float, float] | None = None,
+    ) -> Traffic:
+        """Let people walk as a simulation or a video has recorded them; each stay on the deck is a walker.
+
+        Parameters
+        ----------
+        table : str, Path, or table with columns
+            A SQLite file of JuPedSim; a text file as PedPy and PeTrack have it, with columns id, frame, x, y; or
+            columns id, x, y [m], and time [s] or frame, in a dict, a structured array or a data frame. Rows may come in
+            any order.
+        bridge : Footbridge
+            The bridge, for its deck.
+        rng : numpy.random.Generator
+            Source of randomness; bodies and forces have streams of their own.
+        origin : (float, float)
+            Where the centre line of the deck begins, x = 0, as the table has it [m].
+        angle : float
+            Direction of the deck from there, counter-clockwise from the table's x axis [rad].
+        frame_rate : float, optional
+            Frames per second, where the table has frames and does not say [Hz].
+        step_frequency : float or str, optional
+            One for all who walk, or the name of a column that tells it for each; `preferred_step_frequency` of their
+            median speed on the deck if not given [Hz].
+        still : float
+            Median speed on the deck below which a person stands, without a force; 0 lets everybody step [m/s].
+        force : WalkingForce, optional
+            Walking force of the others; the narrow-band `ZivanovicForce` if not given.
+        population, standing_population : Population, optional
+            Whom the bodies of those who walk and of those who stand are drawn from; `Population.walking` and
+            `Population.standing` if not given.
+        weight : float
+            Weight that drives the walking forces, G [N].
+        window : (float, float), optional
+            As in `Traffic`; 0 is the time of frame 0 [s].
+
+        Returns
+        -------
+        Traffic
+
+        Raises
+        ------
+        ValueError
+            If the table can't be read or mapped; the message names the file, the row and the column.
+
+        Examples
+        --------
+        Two people on a deck that points to the north, one of whom stands:
+
+        >>> from hsictrl.bridge import reference_bridge
+        >>> table = {"id": [1, 1, 2, 2], "time": [0.0, 40.0, 0.0, 40.0], "x": [8.0, 8.0, 7.0, 7.0],
+        ...          "y": [100.0, 150.0, 125.0, 125.0]}
+        >>> traffic = Traffic.from_trajectories(table, reference_bridge(), rng=np.random.default_rng(1),
+        ...                                     origin=(8.0, 100.0), angle=np.pi / 2)
+        >>> print(traffic)
+        2 walkers at 1.86 Hz
+        >>> traffic.walkers.places(20.0)
+        array([[25.,  0.],
+               [25.,  1.]])
+        """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+        check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
+        still = check.number("still", still, least=0, remedy="give m/s, 0 if everybody steps")
+        force = ZivanovicForce() if force is None else force
+        check.instance("force", force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
+        crowds = population or Population.walking(), standing_population or Population.standing()
+        for one in crowds:
+            check.instance("population", one, Population, "use Population.walking()")
+        read = recording.read(table, frame_rate)
+        people = recorded.on_deck(read, bridge, origin, angle)
+        walking = np.array([one.speed >= still for one in people])
+        frequencies = recorded.step_frequencies(read, people, walking, step_frequency)
+        return cls(recorded.drawn(people, walking, frequencies, rng=rng, force=force, populations=crowds,
+                                  weight=weight), window=window)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Traffic:
+        """Read traffic that `save` has written.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Traffic
+            The same to the last digit.
+
+        Raises
+        ------
+        ValueError
+            If the file is none of `save`, damaged, or of a later format.
+
+        Examples
+        --------
+        >>> Traffic.load("no such file")
+        Traceback (most recent call last):
+        ValueError: no such file: the traffic must be a file that can be read, got No such file or directory; ...
+        """
+        return cls(**saving.load(_path(path)))
+
+    def save(self, path: str | Path) -> None:
+        """Write traffic into a file, of which `load` makes the same traffic.
+
+        The file is a ZIP of NumPy arrays and holds no code. It appears when all is written, and until then what was
+        there before stays.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; one that is there is replaced.
+
+        Raises
+        ------
+        ValueError
+            If the folder can't be written, or a force is not one of hsictrl.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> from hsictrl.walking import YoungForce
+        >>> walker = Walker(force=YoungForce(), step_frequency=2.0, speed=1.25)
+        >>> with TemporaryDirectory() as folder:
+        ...     Traffic([walker], rng=np.random.default_rng(1)).save(f"{folder}/one.npz")
+        ...     print(Traffic.load(f"{folder}/one.npz"))
+        1 walker at 2.00 Hz
+        """
+        saving.save(_path(path), {one.name: getattr(self, one.name) for one in fields(self)})
 
     def __str__(self) -> str:
         n = len(self.walkers)
@@ -162,8 +301,7 @@ class Traffic:
             return self.window
         if not len(self.walkers):
             raise ValueError("traffic must hold a walker or a window, got neither; give window=(start, end) in s")
-        departure = self.walkers.arrival + bridge.length / self.walkers.speed
-        return float(self.walkers.arrival.min()), float(departure.max())
+        return float(self.walkers.arrival.min()), float(self.walkers.departure(bridge.length).max())
 
     def standing_on(self, bridge: Footbridge) -> tuple[Crowd, Array]:
         """The crowd that stands for the moving one in a pseudo-moving crowd (section 2.4).
@@ -254,8 +392,8 @@ class Traffic:
         """
         check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
-        walkers = self.walkers.part(bridge.carries_across(self.walkers.offset))
-        left = np.searchsorted(np.sort(walkers.arrival + bridge.length / walkers.speed), times, side="left")
+        walkers = self.walkers.part(self.walkers.carried(bridge))
+        left = np.searchsorted(np.sort(walkers.departure(bridge.length)), times, side="left")
         return np.searchsorted(np.sort(walkers.arrival), times, side="right") - left
 
     def _frozen(self, bridge: Footbridge) -> tuple[Walkers, Array]:
@@ -266,6 +404,10 @@ class Traffic:
 
     def _with(self, walkers: Walkers, target: float) -> Traffic:
         return replace(self, walkers=walkers, target=target, rng=None)
+
+
+def _path(path: Any) -> Path:
+    return Path(check.instance("path", path, (str, Path), "give the name of a file"))
 
 
 def step_remarks(mean: float) -> tuple[str, ...]:

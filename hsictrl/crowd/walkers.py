@@ -1,95 +1,23 @@
-"""People on their way: a body, a walking force, and a straight path along the deck."""
+"""Many walkers, as arrays: who they are, and where each of them is."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, final
 
-import control as ct
 import numpy as np
 from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
-from hsictrl.pedestrian import Crowd, Pedestrian
+from hsictrl.bridge import Footbridge
+from hsictrl.crowd.trajectory import Trajectory, check_on_deck
+from hsictrl.crowd.walker import FOLLOWED, Walker
+from hsictrl.pedestrian import Crowd
 from hsictrl.walking import ForceLines, ForceParts, WalkingForce
 
-BY_HAND: dict[str, Any] = {
-    "least": 0.5, "most": 3.5, "remedy": "people step at 0.5 to 3.5 Hz; give f_s, not a bridge frequency"}
-RULES: dict[str, dict[str, Any]] = {
-    "weight": {"above": 0, "remedy": "give N"},
-    "step_frequency": BY_HAND,
-    "speed": {"above": 0, "most": 10, "remedy": "give m/s, at most 10"},
-    "arrival": {"remedy": "give s"},
-    "offset": {"remedy": "give m"},
-}
 Indices = NDArray[np.intp]
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Walker:
-    """One person who crosses the bridge.
-
-    Parameters
-    ----------
-    body : Pedestrian
-        The body.
-    force : WalkingForce
-        The walking force on rigid ground.
-    weight : float
-        Weight that drives the walking force, G; 700 N in the paper, beside a body of 70 kg [N].
-    step_frequency : float
-        Step frequency f_s, 0.5 to 3.5 [Hz].
-    speed : float
-        Walking speed v_s [m/s].
-    arrival : float
-        Time at which the walker steps on, t_a [s].
-    offset : float
-        Lateral position y on the deck, 0 on the centre line [m].
-
-    Examples
-    --------
-    >>> from hsictrl.walking import HarmonicForce
-    >>> walker = Walker(force=HarmonicForce([0.43, 0.08]), step_frequency=2.0, speed=1.25)
-    >>> walker.weight, walker.arrival
-    (700.0, 0.0)
-    """
-
-    body: Pedestrian = field(default_factory=Pedestrian)
-    force: WalkingForce
-    weight: float = 700.0
-    step_frequency: float
-    speed: float
-    arrival: float = 0.0
-    offset: float = 0.0
-
-    def __post_init__(self) -> None:
-        check.instance("body", self.body, Pedestrian, "use hsictrl.Pedestrian()")
-        check.instance("force", self.force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
-        check.store(self, **{name: check.number(name, getattr(self, name), **rule) for name, rule in RULES.items()})
-
-    def ss(self, *, name: str = "walker") -> ct.StateSpace:
-        """Give the walker's body as a block, see `Pedestrian.ss`.
-
-        Parameters
-        ----------
-        name : str
-            Name of the block.
-
-        Returns
-        -------
-        control.StateSpace
-            Inputs y, v, a of the contact point, output F [N].
-
-        Examples
-        --------
-        >>> from hsictrl.walking import YoungForce
-        >>> Walker(force=YoungForce(), step_frequency=2.0, speed=1.25).ss(name="anna").name
-        'anna'
-        """
-        return self.body.ss(name=name)
 
 
 @final
@@ -109,6 +37,8 @@ class Walkers:
         Standard uniform numbers from which each model makes its walkers' forces [-].
     weight, step_frequency, speed, arrival, offset : array, shape (n,)
         As in `Walker` [N, Hz, m/s, s, m].
+    trajectories : sequence of Trajectory or None, shape (n,) or ()
+        The trajectory of each walker who follows one; their speed, arrival and offset are read from it.
 
     Examples
     --------
@@ -128,20 +58,40 @@ class Walkers:
     speed: Array
     arrival: Array
     offset: Array
+    trajectories: Sequence[Trajectory | None] = ()
 
     def __post_init__(self) -> None:
+        followed = any(one is not None for one in self.trajectories)
+        check.store(self, trajectories=tuple(self.trajectories) if followed else ())
         for name in ("weight", "step_frequency", "speed"):
-            values = check.numbers(name, getattr(self, name), above=0, remedy=f"give one {name} per walker")
+            bound: Any = {"least": 0} if self.trajectories and name == "speed" else {"above": 0}
+            values = check.numbers(name, getattr(self, name), **bound, remedy=f"give one {name} per walker")
             check.store(self, **{name: values})
         for name in ("arrival", "offset"):
             check.store(self, **{name: check.numbers(name, getattr(self, name), remedy="give one per walker")})
         lengths = {name: len(getattr(self, name)) for name in ("bodies", "model", *ARRAYS)}
+        if self.trajectories:
+            lengths["trajectories"] = len(self.trajectories)
         if len(set(lengths.values())) > 1:
             raise ValueError(f"walkers' arrays must have the same length, got {lengths}; give one value per walker")
         check.store(self, forces=tuple(self.forces), model=np.array(self.model, dtype=np.intp),
                     draws=tuple(np.asarray(table)[:] for table in self.draws))    # views: a caller's own stay writable
         check.freeze(self.model, *self.draws)
         self._check_draws()
+        if self.trajectories:
+            self._follow()
+
+    def _follow(self) -> None:
+        """Read speed, arrival and offset from the trajectories."""
+        for one in self.trajectories:
+            check.instance("trajectories", one, (Trajectory, type(None)), "give Trajectory(times, x, y), or None")
+        for name in FOLLOWED:
+            read = [0.0 if one is None else getattr(one, name) for one in self.trajectories]
+            values = np.where(self.followed, read, getattr(self, name))
+            check.freeze(values)
+            check.store(self, **{name: values})
+        check.numbers("speed", np.where(self.followed, 1.0, self.speed), above=0,
+                      remedy="give those a trajectory who stand")
 
     def _check_draws(self) -> None:
         expected = [(int(np.sum(self.model == i)), force.n_draws) for i, force in enumerate(self.forces)]
@@ -179,14 +129,16 @@ class Walkers:
         draws = [_draws(force, int(np.sum(model == i)), rng) for i, force in enumerate(forces)]
         own = {name: np.array([getattr(walker, name) for walker in walkers], float) for name in ARRAYS}
         bodies = Crowd.of([walker.body for walker in walkers])
-        return cls(bodies=bodies, forces=tuple(forces), model=model, draws=tuple(draws), **own)
+        return cls(bodies=bodies, forces=tuple(forces), model=model, draws=tuple(draws), **own,
+                   trajectories=tuple(walker.trajectory for walker in walkers))
 
     def __len__(self) -> int:
         return len(self.model)
 
     def __getitem__(self, index: int) -> Walker:
         own = {name: float(getattr(self, name)[index]) for name in ARRAYS}
-        return Walker(body=self.bodies[index], force=self.forces[self.model[index]], **own)
+        return Walker(body=self.bodies[index], force=self.forces[self.model[index]], **own,
+                      trajectory=self.trajectories[index] if self.trajectories else None)
 
     def __iter__(self) -> Iterator[Walker]:
         return (self[i] for i in range(len(self)))
@@ -214,6 +166,7 @@ class Walkers:
         row = self._row_in_model()
         draws = tuple(table[row[kept[self.model[kept] == i]]] for i, table in enumerate(self.draws))
         return Walkers(bodies=self.bodies.part(kept), forces=self.forces, model=self.model[kept], draws=draws,
+                       trajectories=[self.trajectories[k] for k in kept] if self.trajectories else (),
                        **{name: getattr(self, name)[kept] for name in ARRAYS})
 
     def at_step_frequency(self, step_frequency: Array) -> Walkers:
@@ -254,8 +207,142 @@ class Walkers:
         """
         return replace(self, forces=tuple(force.periodic() for force in self.forces))
 
+    @property
+    def followed(self) -> NDArray[np.bool_]:
+        """Who follows a trajectory, shape (n,)."""
+        return np.array([one is not None for one in self.trajectories] or np.zeros(len(self)), dtype=bool)
+
+    def stay(self, length: float) -> Array:
+        """For how long each walker is on a deck: while they cross it, or their trajectory lasts.
+
+        Parameters
+        ----------
+        length : float
+            Length of the deck [m].
+
+        Returns
+        -------
+        array, shape (n,)
+            [s]
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+        >>> Walkers.of([walker]).stay(50.0)
+        array([40.])
+        """
+        if not self.trajectories:
+            return np.asarray(length / self.speed)
+        return np.array([length / v if one is None else one.departure - one.arrival
+                         for v, one in zip(self.speed, self.trajectories, strict=True)])
+
+    def departure(self, length: float) -> Array:
+        """When each walker leaves a deck.
+
+        Parameters
+        ----------
+        length : float
+            Length of the deck [m].
+
+        Returns
+        -------
+        array, shape (n,)
+            [s]
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, arrival=3.0)
+        >>> Walkers.of([walker]).departure(50.0)
+        array([43.])
+        """
+        return self.arrival + self.stay(length)
+
+    def top_speed(self) -> Array:
+        """Highest speed of each walker.
+
+        Returns
+        -------
+        array, shape (n,)
+            [m/s]
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25)
+        >>> Walkers.of([walker]).top_speed()
+        array([1.25])
+        """
+        if not self.trajectories:
+            return self.speed
+        return np.array([v if one is None else one.top_speed
+                         for v, one in zip(self.speed, self.trajectories, strict=True)])
+
+    def carried(self, bridge: Footbridge) -> NDArray[np.bool_]:
+        """Who walks on the deck of a bridge, rather than beside it.
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge, for its deck.
+
+        Returns
+        -------
+        array of bool, shape (n,)
+
+        Raises
+        ------
+        ValueError
+            If a trajectory leaves the deck.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.walking import HarmonicForce
+        >>> beside = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, offset=3.0)
+        >>> Walkers.of([beside]).carried(reference_bridge())
+        array([False])
+        """
+        for one in self.trajectories:
+            if one is not None:
+                check_on_deck(one, bridge)
+        return bridge.carries_across(self.offset)
+
+    def along(self, times: Array, who: Any = slice(None)) -> tuple[Array, Array]:
+        """Where some walkers are, each at times of their own; off the deck too.
+
+        Parameters
+        ----------
+        times : array, shape (k, m)
+            Times, a row for each of them [s].
+        who : index array or mask
+            Which k of the walkers; all if not given.
+
+        Returns
+        -------
+        x, y : array, shape (k, m), or (k, 1) where y stays
+            Positions [m].
+
+        Examples
+        --------
+        >>> from hsictrl.walking import HarmonicForce
+        >>> walker = Walker(force=HarmonicForce([0.4]), step_frequency=2.0, speed=1.25, offset=0.5)
+        >>> Walkers.of([walker]).along(np.array([[4.0]]))
+        (array([[5.]]), array([[0.5]]))
+        """
+        x = self.speed[who, None] * (times - self.arrival[who, None])
+        if not self.trajectories:
+            return x, self.offset[who, None]
+        y = np.broadcast_to(self.offset[who, None], x.shape).copy()
+        for row, k in enumerate(np.arange(len(self))[who]):
+            one = self.trajectories[k]
+            if one is not None:
+                x[row], y[row] = one(times[row]).T
+        return x, y
+
     def position(self, times: Any) -> Array:
-        """Where the walkers are along the line of the deck: x = v(t − t_a); off the deck too.
+        """Where the walkers are along the line of the deck: x = v(t − t_a), or by trajectory; off the deck too.
 
         Parameters
         ----------
@@ -275,7 +362,7 @@ class Walkers:
         array([[0., 5.]])
         """
         times = check.numbers("times", times, ndim=1, remedy="give a list of seconds")
-        return self.speed[:, None] * np.subtract.outer(times, self.arrival).T
+        return self.along(np.broadcast_to(times, (len(self), len(times))))[0]
 
     def places(self, time: float) -> Array:
         """Where the walkers are at an instant; off the deck too.
@@ -297,7 +384,8 @@ class Walkers:
         >>> Walkers.of([walker]).places(4.0)
         array([[5. , 0.5]])
         """
-        return np.column_stack([self.position([time])[:, 0], self.offset])
+        instant = check.number("time", time, remedy="give s")
+        return np.column_stack([part[:, 0] for part in self.along(np.full((len(self), 1), instant))])
 
     def lines(self) -> list[tuple[Indices, ForceLines]]:
         """Walking forces of all walkers, model by model.

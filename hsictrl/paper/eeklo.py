@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from hsictrl._checks import Array
 from hsictrl.bridge import eeklo_bridge
-from hsictrl.pedestrian import Population
+from hsictrl.pedestrian.population import POSTURES as NAMED
 
 BRIDGE = eeklo_bridge()
 SETUPS = (3, 9, 15, 21, 26)
-POSTURES = {"upright": Population.standing(), "bent legs": Population.walking()}
+POSTURES = {posture: NAMED[posture] for posture in ("upright", "bent legs")}
 SPACING, STRINGERS = 3.0, (-1.0, 1.0, 0.0)     # of cross girders along the deck, and places across it [m]
 GIRDERS = (0, -1, 1, -2, 2, -3, 3, -4, 4)      # in the order in which they are occupied, from midspan
 

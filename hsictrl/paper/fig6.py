@@ -20,8 +20,9 @@ COLUMNS = ["posture", "persons", "frequency_hz", "damping", "damping_low", "damp
 
 def report(run: Run) -> Report:
     """Both postures, 15 persons."""
-    decays = {posture: decay(occupied(posture)) for posture in POSTURES}
-    rows = [_row(posture, decays[posture]) for posture in POSTURES]
+    systems = {posture: occupied(posture) for posture in POSTURES}
+    decays = {posture: decay(system) for posture, system in systems.items()}
+    rows = [_row(posture, system, decays[posture]) for posture, system in systems.items()]
     return Report(name="fig6", rows=rows, columns=COLUMNS, draw=lambda: _draw(decays), caption=(
         f"Fig. 6: free decay of the vertical mode of the footbridge in Eeklo with {PERSONS} random bodies on it, after "
         f"bobbing at its resonance: exponential through the extremes between 90 and 20 %; beside it f_eff and ξ_eff "
@@ -53,8 +54,7 @@ def straight() -> Finding:
                       for posture, one in found.items()), told, "the extremes do not lie on a line")
 
 
-def _row(posture: str, one: FreeDecay) -> dict[str, float | str | int]:
-    system = occupied(posture)
+def _row(posture: str, system: OccupiedBridge, one: FreeDecay) -> dict[str, float | str | int]:
     read, pole = (effective(system, mode=VERTICAL, method=method) for method in ("peak", "pole"))
     low, high = one.damping_interval
     return {"posture": posture, "persons": PERSONS, "frequency_hz": rounded(one.frequency),

@@ -86,7 +86,7 @@ def standing(condition: Condition, upwards: Crowd, sideways: Crowd) -> tuple[Cro
     people, there = upwards.part(beside), places[beside]
     if not condition.lateral:
         return people, there
-    return Crowd.of([*people, *sideways.part(beside)]), np.vstack([there, there])
+    return people + sideways.part(beside), np.vstack([there, there])
 
 
 TRIALS = tuple(PostureTrial(posture=posture, persons=persons) for posture, persons in product(POSTURES, SETUPS))

@@ -57,49 +57,17 @@ class SprungBody:
         return 2 * self.damping * self.sprung_mass * self.omega
 
 
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Pedestrian(SprungBody):
-    """The body of one person: a damped sprung mass above an unsprung one.
-
-    The defaults are those of a walker, with one or two legs slightly bent (section 2.2 of Van Nimmen
-    et al., 2017).
-
-    Parameters
-    ----------
-    mass : float
-        Whole mass, sprung and unsprung [kg].
-    frequency : float
-        Natural frequency on a rigid floor [Hz].
-    damping : float
-        Damping ratio on a rigid floor, in [0, 1) [-].
-    sprung_ratio : float
-        Share of the mass that is sprung, in (0, 1] [-].
-    direction : {"vertical", "lateral"}
-        Direction in which the body moves.
+class Body(SprungBody):
+    """One body on a deck, whoever or whatever it is: a `Pedestrian`, or an `Absorber`.
 
     Examples
     --------
-    >>> body = Pedestrian()
-    >>> round(body.sprung_mass, 2), round(body.unsprung_mass, 2)
-    (66.5, 3.5)
-    >>> print(Pedestrian(frequency=5.7, damping=0.44))
-    70 kg at 5.70 Hz, 44.0 %, 95 % sprung, vertical
+    >>> isinstance(Pedestrian(), Body)
+    True
     """
 
-    mass: float = 70.0
-    frequency: float = 3.25
-    damping: float = 0.30
-    sprung_ratio: float = 0.95
-    direction: str = "vertical"
-
-    def __post_init__(self) -> None:
-        check.store(self, **{name: check.number(name, getattr(self, name), **rule) for name, rule in RULES.items()})
-        check.choice("direction", self.direction, check.DIRECTIONS)
-
-    def __str__(self) -> str:
-        return (f"{self.mass:g} kg at {self.frequency:.2f} Hz, {self.damping:.1%}, ".replace("%", " %")
-                + f"{self.sprung_ratio:.0%} sprung, {self.direction}".replace("%", " %"))
+    __slots__ = ()
+    direction: str
 
     def apparent_mass(self, s: complex | Complex) -> Complex:
         """Apparent mass: the force that moves the contact point, over its acceleration.
@@ -151,7 +119,52 @@ class Pedestrian(SprungBody):
                      inputs=list(ports), outputs=["F"], states=["u", "du"], name=name)
 
 
-def block_matrices(body: Pedestrian) -> tuple[Array, Array, Array, Array]:
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pedestrian(Body):
+    """The body of one person: a damped sprung mass above an unsprung one.
+
+    The defaults are those of a walker, with one or two legs slightly bent (section 2.2 of Van Nimmen
+    et al., 2017).
+
+    Parameters
+    ----------
+    mass : float
+        Whole mass, sprung and unsprung [kg].
+    frequency : float
+        Natural frequency on a rigid floor [Hz].
+    damping : float
+        Damping ratio on a rigid floor, in [0, 1) [-].
+    sprung_ratio : float
+        Share of the mass that is sprung, in (0, 1] [-].
+    direction : {"vertical", "lateral"}
+        Direction in which the body moves.
+
+    Examples
+    --------
+    >>> body = Pedestrian()
+    >>> round(body.sprung_mass, 2), round(body.unsprung_mass, 2)
+    (66.5, 3.5)
+    >>> print(Pedestrian(frequency=5.7, damping=0.44))
+    70 kg at 5.70 Hz, 44.0 %, 95 % sprung, vertical
+    """
+
+    mass: float = 70.0
+    frequency: float = 3.25
+    damping: float = 0.30
+    sprung_ratio: float = 0.95
+    direction: str = "vertical"
+
+    def __post_init__(self) -> None:
+        check.store(self, **{name: check.number(name, getattr(self, name), **rule) for name, rule in RULES.items()})
+        check.choice("direction", self.direction, check.DIRECTIONS)
+
+    def __str__(self) -> str:
+        return (f"{self.mass:g} kg at {self.frequency:.2f} Hz, {self.damping:.1%}, ".replace("%", " %")
+                + f"{self.sprung_ratio:.0%} sprung, {self.direction}".replace("%", " %"))
+
+
+def block_matrices(body: Body) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D from y, v, a of the deck to the force on it (eq. 4, A.3), with states u and du."""
     k, c, m = body.stiffness, body.damping_coefficient, body.sprung_mass
     return (np.array([[0, 1], [-k / m, -c / m]]), np.array([[0, 0, 0], [k / m, c / m, 0]]),

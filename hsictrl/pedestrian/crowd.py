@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 import control as ct
 import numpy as np
@@ -14,13 +14,16 @@ from scipy.linalg import block_diag
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._names import labels
-from hsictrl.pedestrian.body import RULES, Pedestrian, SprungBody, block_matrices, checked_ports
+from hsictrl.pedestrian.body import RULES, Body, Pedestrian, SprungBody, block_matrices, checked_ports
+
+if TYPE_CHECKING:
+    from hsictrl.pedestrian.reduced import ModalBridge, ReducedCrowd
 
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Crowd(SprungBody):
-    """Bodies of n people as arrays.
+    """Bodies of n people as arrays. Crowds add up: ``people + others``.
 
     Parameters
     ----------
@@ -48,12 +51,12 @@ class Crowd(SprungBody):
         check.store(self, **dict(zip(self.__slots__, _same_length(values), strict=True)))
 
     @classmethod
-    def of(cls, bodies: Sequence[Pedestrian]) -> Crowd:
+    def of(cls, bodies: Sequence[Body]) -> Crowd:
         """Gather single bodies.
 
         Parameters
         ----------
-        bodies : sequence of Pedestrian
+        bodies : sequence of Pedestrian or Absorber
             The bodies, in order.
 
         Returns
@@ -65,8 +68,9 @@ class Crowd(SprungBody):
         >>> len(Crowd.of([Pedestrian(), Pedestrian(mass=80.0)]))
         2
         """
-        for body in check.instance("bodies", bodies, Sequence, "give a sequence of Pedestrian"):
-            check.instance("bodies", body, Pedestrian, "give a sequence of Pedestrian")
+        remedy = "give a sequence of Pedestrian or Absorber"
+        for body in check.instance("bodies", bodies, Sequence, remedy):
+            check.instance("bodies", body, Body, remedy)
         values: dict[str, Any] = {name: [getattr(body, name) for body in bodies] for name in cls.__slots__}
         return cls(**values)
 
@@ -81,6 +85,12 @@ class Crowd(SprungBody):
 
     def __iter__(self) -> Iterator[Pedestrian]:
         return (self[i] for i in range(len(self)))
+
+    def __add__(self, others: Crowd) -> Crowd:
+        """These bodies and then the others."""
+        if not isinstance(others, Crowd):
+            return NotImplemented
+        return Crowd(**{name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in self.__slots__})
 
     def __str__(self) -> str:
         if not len(self):
@@ -107,6 +117,48 @@ class Crowd(SprungBody):
         2
         """
         return Crowd(**{name: getattr(self, name)[which] for name in self.__slots__})
+
+    def reduced(self, *, order: int, bridge: ModalBridge, positions: Any) -> ReducedCrowd:
+        """A few bodies that the modes of a bridge feel as they feel all of these.
+
+        Bodies that move alike are merged, which is exact. If too many are left, bodies in some of their
+        places are fitted to the apparent mass of all, from a third of the lowest frequency to twice the
+        highest. On a single mode the static and the unsprung apparent mass are kept exactly, and order 2 is
+        the equivalent single oscillator of two-degree-of-freedom models (Sachse, Pavic & Reynolds, 2004)
+        with a fitted frequency and damping.
+
+        Parameters
+        ----------
+        order : int
+            Number of states at most, two for each body; for n_m modes at least n_m(n_m + 1) [-].
+        bridge : Footbridge
+            The bridge, for its mode shapes and lowest damping ratio; its natural frequencies do not matter.
+        positions : array_like, shape (n,) or (n, 2)
+            Where the bodies stand on its deck [m].
+
+        Returns
+        -------
+        ReducedCrowd
+            With `people` and `positions` for `couple`, and a `bound` on the error.
+
+        Raises
+        ------
+        ValueError
+            If the order is odd, too low or too high, or a body has no damping.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> from hsictrl.pedestrian import Population
+        >>> rng, bridge = np.random.default_rng(1), reference_bridge(frequency=2.0, damping=0.005)
+        >>> people, places = Population.walking().sample(225, rng), rng.uniform(0, 50, 225)
+        >>> small = people.reduced(order=8, bridge=bridge, positions=places)
+        >>> len(small.people), small.positions.shape
+        (4, (4, 2))
+        """
+        from hsictrl.pedestrian.reduced import reduced  # only now: it is made of crowds
+
+        return reduced(self, order, bridge, positions)
 
     def ss(self, *, ports: Sequence[str] = ("y", "v", "a"), name: str = "crowd") -> ct.StateSpace:
         """Give all bodies as one block: motion of the deck under each in, force on the deck there out (eq. 4).

@@ -56,7 +56,7 @@ class Population:
 
     @classmethod
     def walking(cls) -> Population:
-        """Walkers, one or two legs slightly bent: N(3.25, 0.32) Hz, N(0.30, 0.05) (section 2.2).
+        """Legs slightly bent, of those who walk or stand so: N(3.25, 0.32) Hz, N(0.30, 0.05) (section 2.2).
 
         Returns
         -------
@@ -71,7 +71,7 @@ class Population:
 
     @classmethod
     def standing(cls) -> Population:
-        """People standing upright: N(5.7, 0.56) Hz, N(0.44, 0.07) (section 3.4).
+        """Upright, the normal way to stand: N(5.7, 0.56) Hz, N(0.44, 0.07) (section 3.4).
 
         Returns
         -------
@@ -97,8 +97,12 @@ class Population:
 
         Examples
         --------
-        >>> Population.lateral().direction
-        'lateral'
+        People who push back both ways have two bodies each, at the same place:
+
+        >>> rng = np.random.default_rng(1)
+        >>> both = Population.walking().sample(5, rng) + Population.lateral().sample(5, rng)
+        >>> len(both), str(both.direction[0]), str(both.direction[5])
+        (10, 'vertical', 'lateral')
         """
         return cls(frequency=(0.75, 0.125), damping=(0.30, 0.05), direction="lateral")
 
@@ -140,3 +144,6 @@ def _mean_and_spread(name: str, value: Any, below: float | None) -> tuple[float,
         raise ValueError(f"{name} must be a value or (mean, standard deviation), got shape {pair.shape}; {remedy}")
     mean = check.number(name, pair[0], above=0 if name != "damping" else None, below=below, remedy=remedy)
     return mean, float(pair[1]) if len(pair) == 2 else 0.0
+
+
+POSTURES = {"bent legs": Population.walking(), "upright": Population.standing()}

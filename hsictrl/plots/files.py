@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -55,6 +56,37 @@ def save(plot: ct.ControlPlot, path: str | os.PathLike[str]) -> None:
     """
     plot.figure.savefig(_path(path), dpi=150)
     plt.close(plot.figure)
+
+
+def svg(plot: ct.ControlPlot, *, size: tuple[float, float]) -> str:
+    """Draw the figure of a plot as SVG, the same text for the same plot, and close it.
+
+    Parameters
+    ----------
+    plot : control.ControlPlot
+        What a plotting function returned.
+    size : (float, float)
+        Width and height of the figure [in].
+
+    Returns
+    -------
+    str
+        The document.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> from hsictrl.plots import frf_plot
+    >>> from hsictrl.resonance import frf
+    >>> "<svg" in svg(frf_plot(frf(reference_bridge(), [1.0, 2.0, 3.0])), size=(6.0, 3.4))
+    True
+    """
+    drawn = io.StringIO()
+    plot.figure.set_size_inches(size)
+    with plt.rc_context({"svg.hashsalt": "hsictrl"}):       # identifiers in the document are random without
+        plot.figure.savefig(drawn, format="svg", metadata={"Date": None})
+    plt.close(plot.figure)
+    return drawn.getvalue()
 
 
 def animation_endings() -> tuple[str, ...]:

@@ -80,6 +80,7 @@ def map_plot(
     >>> [contours.levels.tolist() for _, contours in plot.lines[0]]     # those within the values of the panel
     [[1.0, 2.0], [2.0, 3.0]]
     """
+    check.instance("quantity", quantity, str, "give a name and a unit, such as 'Peak acceleration [m/s²]'")
     across = check.increasing("x", x, remedy="sort them, and the columns of the panels with them")
     along = check.increasing("y", y, remedy="sort them, and the rows of the panels with them")
     fields = _fields(panels, (len(along), len(across)))

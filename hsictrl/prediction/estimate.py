@@ -155,7 +155,7 @@ def spectral_estimate(
     """
     force = _checked(model, bridge, flow, force)
     system = couple(bridge, *mean_crowd(bridge, flow), name=model) if model == "PMC" else couple(bridge, name=model)
-    frequency = effective(system).frequency if model == "PMC" else bridge.modes[0].frequency
+    frequency = effective(system).frequency if len(system.people) else bridge.modes[0].frequency
     steps = StepRule(*flow.step_rule_on(bridge, frequency))
     density, band = _acceleration(system, flow, force, steps)
     found = _estimate(system, density, band, steps, percentile)

@@ -91,8 +91,8 @@ def _add(
     from hsictrl.prediction.deposit import deposit  # only now: it loads the compiler
 
     first = np.ceil((walkers.arrival[who] - grid.first) / grid.step).astype(np.intp)
-    count = int(np.ceil(bridge.length / walkers.speed[who].min() / grid.step))
-    present = np.flatnonzero((first > -count) & (first < grid.count) & bridge.carries_across(walkers.offset[who]))
+    count = min(int(np.ceil(np.max(walkers.stay(bridge.length)[who]) / grid.step)), grid.count - int(np.min(first)))
+    present = np.flatnonzero((first > -count) & (first < grid.count) & walkers.carried(bridge)[who])
     for rows in _blocks(present, SHAPES_AT_ONCE):
         begin = grid.first + grid.step * first[rows]
         shapes = _shapes(bridge, walkers, who[rows], begin[:, None] + grid.step * np.arange(count))
@@ -113,5 +113,5 @@ def _blocks(indices: Indices, size: int) -> list[Indices]:
 
 def _shapes(bridge: Footbridge, walkers: Walkers, who: Indices, times: Array) -> Array:
     """Mass-normalised modes under some walkers, each at times of its own, shape (n_m, n, m) [1/√kg]."""
-    x, y = walkers.speed[who, None] * (times - walkers.arrival[who, None]), walkers.offset[who, None]
+    x, y = walkers.along(times, who)
     return np.stack([mode.shape(x, y, "vertical") / np.sqrt(mode.modal_mass) for mode in bridge.modes])

@@ -157,7 +157,8 @@ def predict_tuned(model: str, bridge: Footbridge, traffic: Traffic) -> Predictio
     """
     system = _system(model, bridge, traffic, None)
     found = _resonances(system)
-    return _predicted(system, found, _tuned(traffic, system, found), None, None)
+    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
+    return _predicted(system, found, _tuned(traffic, resonant.frequency), None, None)
 
 
 def _predicted(
@@ -228,8 +229,9 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     Parameters
     ----------
     model : {"SF", "MF", "MFAM", "PMC", "MC"}
-        "SF" and "MF" meet the empty bridge's first mode, "MFAM" that of the bridge with the mass of this
-        traffic's standing crowd, "PMC" and "MC" the effective frequency of the bridge with that crowd.
+        "SF" and "MF" meet the empty bridge's first mode (`Footbridge.led_by` puts another first), "MFAM" that of
+        the bridge with the mass of this traffic's standing crowd, "PMC" and "MC" the effective frequency of the
+        bridge with that crowd. A bridge with absorbers has its effective frequency in all of them.
     bridge : Footbridge
         The empty bridge.
     traffic : Traffic
@@ -251,12 +253,11 @@ def tune(model: str, bridge: Footbridge, traffic: Traffic) -> Traffic:
     [2.0, 2.0, 1.818, 1.754, 1.754]
     """
     system = _system(model, bridge, traffic, None)
-    return _tuned(traffic, system, [effective(system)] if len(system.people) else [])
+    resonant = effective(system) if len(system.people) else system.bridge.modes[0]
+    return _tuned(traffic, resonant.frequency)
 
 
-def _tuned(traffic: Traffic, system: OccupiedBridge, found: Resonances) -> Traffic:
-    resonant = (found[0] or effective(system)) if found else system.bridge.modes[0]
-    frequency = resonant.frequency
+def _tuned(traffic: Traffic, frequency: float) -> Traffic:
     return traffic.tuned(resonant_step_frequency(frequency)[0])
 
 
@@ -328,11 +329,11 @@ def _full_deck(traffic: Traffic, bridge: Footbridge) -> float:
 
 
 def _crossing(traffic: Traffic, bridge: Footbridge) -> float:
-    return bridge.length / float(traffic.walkers.speed.min())
+    return float(np.max(traffic.walkers.stay(bridge.length)))
 
 
 def _resonances(system: OccupiedBridge) -> Resonances:
-    """Effective properties of every mode where somebody stands, if it has a peak; an empty bridge has its own."""
+    """Effective properties of every mode where a body is, if it has a peak; a bare bridge has its own."""
     return [_resonance(system, j) for j in range(system.bridge.n_modes if len(system.people) else 0)]
 
 
@@ -345,11 +346,15 @@ def _resonance(system: OccupiedBridge, mode: int) -> EffectiveProperties | None:
 
 def _slowest_decay(system: OccupiedBridge, found: Resonances) -> float:
     """Smallest ξω of the modes, effective ones where somebody stands, and of the bodies [1/s]."""
+    bridge = system.bridge
     if not found:
-        return float(np.min(system.bridge.damping * system.bridge.omega))
-    bodies = np.min(system.people.damping * system.people.omega)
-    read = [(mode if one is None else one) for mode, one in zip(system.bridge.modes, found, strict=True)]
-    return float(min(bodies, *(2 * np.pi * one.frequency * one.damping for one in read)))
+        return float(np.min(bridge.damping * bridge.omega))
+    read = [(mode if one is None else one) for mode, one in zip(bridge.modes, found, strict=True)]
+    decays = [2 * np.pi * one.frequency * one.damping for one in read]
+    if bridge.absorbers:    # of two peaks, the higher one tells of half the motion only: the poles know
+        decays.append(max(0.0, -float(couple(bridge).poles().real.max())))
+    people = system.people.part(slice(len(bridge.absorbers), None))
+    return float(np.min(people.damping * people.omega, initial=min(decays)))
 
 
 def _grid(

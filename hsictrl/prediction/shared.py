@@ -206,7 +206,7 @@ def check_alike(bridges: Sequence[Footbridge]) -> Footbridge:
     Raises
     ------
     ValueError
-        If a bridge has several modes, or a deck or shape of its own.
+        If a bridge has several modes or an absorber, or a deck or shape of its own.
 
     Examples
     --------
@@ -218,6 +218,8 @@ def check_alike(bridges: Sequence[Footbridge]) -> Footbridge:
         check.instance("bridges", bridge, Footbridge, "describe each by its mode")
         if bridge.n_modes != 1:
             raise ValueError(f"bridges must have one mode each, got {bridge.n_modes}; use predict for each of them")
+        if bridge.absorbers:    # they push back whatever the model, so that no response scales with the modal mass
+            raise ValueError(f"bridges must have no absorbers, got {len(bridge.absorbers)}; use predict for each")
     decks = [replace(bridge, mass=1.0, modes=[replace(bridge.modes[0], frequency=1.0, damping=0.0, modal_mass=1.0)])
              for bridge in bridges]
     if any(deck != decks[0] for deck in decks):

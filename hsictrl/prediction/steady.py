@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from hsictrl._checks import Array
-from hsictrl.bridge import Footbridge
 from hsictrl.coupling import OccupiedBridge
 from hsictrl.crowd import Walkers
 from hsictrl.prediction.grid import Grid
@@ -46,7 +45,7 @@ def steady_accelerations(system: OccupiedBridge, walkers: Walkers, places: Array
     rows = system.bridge.participation(system.bridge.on_deck("places", places))
     total = np.zeros((len(system.sense_at), len(grid.times)))
     for who, force in walkers.lines():
-        _refuse_resonance(system.bridge, force)
+        _refuse_resonance(system, force)
         for signal, response in zip(total, _responses(system, rows[who], force), strict=True):
             together = _in_step(response)
             starts = np.full(together.n_walkers, grid.times[0])
@@ -70,10 +69,11 @@ def _in_step(force: ForceLines) -> ForceLines:
     return replace(force, coefficients=coefficients, step_frequency=frequencies)
 
 
-def _refuse_resonance(bridge: Footbridge, force: ForceLines) -> None:
-    """An undamped mode driven at its own frequency has no steady state."""
-    for mode in bridge.modes:
-        if mode.damping == 0 and np.any(np.isclose(force.frequencies, mode.frequency, rtol=IN_TUNE, atol=0)):
+def _refuse_resonance(system: OccupiedBridge, force: ForceLines) -> None:
+    """An undamped vibration driven at its own frequency has no steady state."""
+    for pole in system.poles():
+        frequency, undamped = abs(pole) / (2 * np.pi), abs(pole.real) < IN_TUNE * abs(pole)
+        if undamped and np.any(np.isclose(force.frequencies, frequency, rtol=IN_TUNE, atol=0)):
             raise ValueError("a steady state needs damping where a harmonic of walking meets a mode, got 0 % and both "
-                             f"at {mode.frequency:.4g} Hz; give the bridge a damping ratio above 0, or take the "
+                             f"at {frequency:.4g} Hz; give the bridge a damping ratio above 0, or take the "
                              "model 'MF'")

@@ -32,6 +32,10 @@ class Curve(ABC):
     def slope(self, omega: float) -> float:
         """d ln|H|/dω [s]."""
 
+    def mixing(self, omega: float) -> float:
+        """Largest motion of another mode over this one's, mass-normalised, where this one is driven [-]."""
+        return 0.0
+
     def peaks(self, band: tuple[float, float]) -> Array:
         """Angular frequencies of all local maxima inside the band, refined by the slope's zero [rad/s]."""
         grid = np.geomspace(*band, POINTS)
@@ -79,6 +83,11 @@ class ModalCurve(Curve):
             stiffness, growth = self.system.dynamic_stiffness(s)[0], dynamic_stiffness_slope(self.system, s)
         column = np.linalg.solve(stiffness, np.eye(len(stiffness))[self.index])
         return float((1j * (2 / s - column @ growth @ column / column[self.index])).real)
+
+    def mixing(self, omega: float) -> float:
+        stiffness = self.system.dynamic_stiffness(1j * omega)[0]
+        motion = np.abs(np.linalg.solve(stiffness, np.eye(len(stiffness))[self.index]))
+        return float(np.max(np.delete(motion, self.index), initial=0.0) / motion[self.index])
 
 
 @final

@@ -16,6 +16,7 @@ from hsictrl.resonance.poles import dominant_pole
 from hsictrl.resonance.response import occupied
 
 METHODS = ("peak", "pole", "halfpower")
+MIXED = 0.5             # the peak is lower by 1/(1 + mixing²), so that ξ_eff is a quarter too high
 UNBOUNDED = 1e12        # below a damping ratio of 1e-12 rounding decides how high a peak is
 
 
@@ -37,6 +38,9 @@ class EffectiveProperties:
     competing : tuple of (float, float)
         Frequency and accelerance of every other local maximum, highest first. Where a mode shifts, two
         peaks compete, and f_eff jumps from one to the other [Hz, m/s² per N].
+    mixing : float
+        How much the mode that moves along the most does, over this one, both mass-normalised, at the peak. From about
+        a half on the peak belongs to no mode of the bridge alone, and says little of this one [-].
 
     Examples
     --------
@@ -51,6 +55,7 @@ class EffectiveProperties:
     peak: float
     method: str
     competing: tuple[tuple[float, float], ...] = ()
+    mixing: float = 0.0
 
     def __iter__(self) -> Iterator[float]:
         return iter((self.frequency, self.damping))
@@ -58,7 +63,8 @@ class EffectiveProperties:
     def __str__(self) -> str:
         text = f"{self.frequency:.4f} Hz, {100 * self.damping:.3f} % ({self.method}), |H| = {self.peak:.4g} m/s² per N"
         others = ", ".join(f"{f:.3f} Hz ({h / self.peak:.0%})" for f, h in self.competing)
-        return f"{text}; competing peaks at {others}" if others else text
+        mixed = f"; another mode moves {self.mixing:.0%} as much" if self.mixing > MIXED else ""
+        return (f"{text}; competing peaks at {others}" if others else text) + mixed
 
     def to_dict(self) -> dict[str, Any]:
         """Export with the units in the keys.
@@ -72,10 +78,10 @@ class EffectiveProperties:
         --------
         >>> from hsictrl.bridge import reference_bridge
         >>> sorted(effective(reference_bridge(frequency=2.0)).to_dict())
-        ['competing', 'damping', 'frequency_hz', 'method', 'peak_m_per_s2_per_n']
+        ['competing', 'damping', 'frequency_hz', 'method', 'mixing', 'peak_m_per_s2_per_n']
         """
         return {"frequency_hz": self.frequency, "damping": self.damping, "peak_m_per_s2_per_n": self.peak,
-                "method": self.method, "competing": [list(pair) for pair in self.competing]}
+                "method": self.method, "competing": [list(pair) for pair in self.competing], "mixing": self.mixing}
 
 
 def effective(
@@ -143,7 +149,7 @@ def _described(curve: Curve, tops: np.ndarray, method: str) -> EffectiveProperti
     omega, damping = _read(curve, float(tops[order[0]]), float(heights[order[0]]), method)
     others = tuple((float(tops[i] / (2 * np.pi)), float(heights[i])) for i in order[1:])
     return EffectiveProperties(frequency=omega / (2 * np.pi), damping=damping, peak=float(heights[order[0]]),
-                               method=method, competing=others)
+                               method=method, competing=others, mixing=curve.mixing(float(tops[order[0]])))
 
 
 def _read(curve: Curve, top: float, height: float, method: str) -> tuple[float, float]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hsictrl.coupling import OccupiedBridge
 from hsictrl.resonance.curves import dynamic_stiffness_slope
+
+SINGULAR = 1e-6     # at a pole that rounding has moved, over |s|²
 
 
 def dominant_pole(system: OccupiedBridge, index: int) -> complex:
@@ -25,15 +26,15 @@ def _weight(residue: float, pole: complex) -> float:
 def _residue(system: OccupiedBridge, pole: complex, index: int) -> float:
     """Residue of s²[D⁻¹]_jj at a pole: s²v_j²/(vᵀD′v), v the null vector of D.
 
-    A body that no mode moves has a pole of its own, where D grows without bound instead: residue zero.
+    A body that no mode moves has a pole of its own, where D grows without bound instead: residue zero. So it does, but
+    for a direction that is left, where several modes move together.
     """
     with np.errstate(all="ignore"):
         stiffness, slope = system.dynamic_stiffness(pole)[0], dynamic_stiffness_slope(system, pole)
     if not (np.isfinite(stiffness).all() and np.isfinite(slope).all()):
         return 0.0
-    vector = _null_vector(stiffness)
+    _, sizes, right = np.linalg.svd(stiffness)
+    if sizes[-1] > SINGULAR * abs(pole)**2:
+        return 0.0
+    vector = right[-1].conj()
     return float(abs(pole**2 * vector[index]**2 / (vector @ slope @ vector)))
-
-
-def _null_vector(matrix: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    return np.asarray(np.linalg.svd(matrix)[2][-1].conj())

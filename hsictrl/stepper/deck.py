@@ -26,6 +26,7 @@ class Deck:
     """Arrays of the kernel with as many seats as are needed at once, taken and left between blocks of time.
 
     A walker whose body moves laterally takes two seats: one for the body, one for the force, which is vertical.
+    Absorbers of the bridge have come before anybody, and stay.
 
     Parameters
     ----------
@@ -35,26 +36,41 @@ class Deck:
         Step of the kernel [s].
     blocks : array, shape (b + 1,)
         Times between which nobody takes a seat or leaves it [s].
+
+    Notes
+    -----
+    The kernel knows straight ways only: it reads a table of shapes at a constant pace. Whoever follows a trajectory
+    gets tables for one block at a time, which are read in proportion to time.
     """
 
     def __init__(self, crowd: MovingCrowd, step: float, blocks: Array) -> None:
         walkers = crowd.traffic.walkers
-        self._crowd, self._step = crowd, step
+        self._crowd, self._step, self._blocks = crowd, step, blocks
         self._finer = 1 << min(max(0, int(np.log2(TABLES_SUFFICE / step))), FINEST)
-        self._walkers = walkers.part(crowd.bridge.carries_across(walkers.offset))
-        lateral = self._walkers.bodies.direction != "vertical"
+        self._walkers = walkers.part(walkers.carried(crowd.bridge))
+        fixed, places = crowd.bridge.fixed
+        bodies, self._n_fixed = fixed + self._walkers.bodies, len(fixed)
+        lateral = (bodies.direction != "vertical") & (np.arange(len(bodies)) >= self._n_fixed)
         self._who = np.concatenate([np.arange(len(lateral)), np.flatnonzero(lateral)])
         self._embodied = np.arange(len(self._who)) < len(lateral)
-        self._driven = ~(self._embodied & lateral[self._who])
-        self._direction = np.where(self._embodied, self._walkers.bodies.direction[self._who], "vertical")
-        self._arrival = self._walkers.arrival[self._who]
-        self._speed, self._offset = self._walkers.speed[self._who], self._walkers.offset[self._who]
-        self._departure = self._arrival + crowd.bridge.length / self._speed
-        self._bodies = _alone(self._walkers.bodies)[:, self._who]
+        self._driven = (self._who >= self._n_fixed) & ~(self._embodied & lateral[self._who])
+        self._direction = np.where(self._embodied, bodies.direction[self._who], "vertical")
+        self._enlist(places, blocks[0] - 1.0, blocks[-1] + 1.0)
+        self._bodies = _alone(bodies)[:, self._who]
         self._bodies[2:] *= self._embodied
         self._first = np.maximum(np.searchsorted(blocks, self._arrival, side="right") - 1, 0)
         self._last = np.searchsorted(blocks, self._departure) - 1
         self._furnish(_most_at_once(self._first, self._last, len(blocks) - 1))
+
+    def _enlist(self, places: Array, before: float, after: float) -> None:
+        """From where, when, how fast and until when all go; absorbers stay from before to after all times."""
+        walkers, still = self._walkers, np.zeros(self._n_fixed)
+        left = walkers.departure(self._crowd.bridge.length)
+        self._follows = np.append(still > 0, walkers.followed)[self._who]
+        everybody = (np.append(places[:, 0], 0 * left), np.append(still + before, walkers.arrival),
+                     np.append(still, walkers.speed), np.append(places[:, 1], walkers.offset),
+                     np.append(still + after, left))
+        self._start, self._arrival, self._speed, self._offset, self._departure = (one[self._who] for one in everybody)
 
     def _furnish(self, seats: int) -> None:
         """Make empty seats."""
@@ -80,21 +96,39 @@ class Deck:
         self._free[seats] = False
         self.contacts = self.contacts._replace(used=int(np.max(np.flatnonzero(~self._free), initial=-1)) + 1)
         if len(new):
-            self._seat_paths(new, seats)
+            self._seat_paths(new[~self._follows[new]])
             self._seat_bodies(new, seats)
             self._seat_forces(new[self._driven[new]])
+        self._lead(np.flatnonzero(self._follows & (self._seat >= 0) & (self._last >= block)), block)
 
-    def _seat_paths(self, new: Indices, seats: Indices) -> None:
-        contacts, x = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
-        contacts.paths[:, seats] = self._arrival[new], self._departure[new], self._speed[new]
+    def _seat_paths(self, new: Indices) -> None:
+        contacts, along = self.contacts, np.linspace(0, self._crowd.bridge.length, POINTS)
+        contacts.paths[:, self._seat[new]] = self._arrival[new], self._departure[new], self._speed[new]
+        self._tabulate(new, self._start[new, None] + along * (self._speed[new, None] > 0), self._offset[new, None])
+
+    def _lead(self, who: Indices, block: int) -> None:
+        """Tables of those who follow a trajectory, over a block and a bit: its ends are no events."""
+        if not len(who):
+            return
+        bit, length = 2 * self._step, self._crowd.bridge.length
+        start = np.maximum(self._arrival[who], self._blocks[block] - bit)
+        stop = np.minimum(self._departure[who], self._blocks[block + 1] + bit)
+        self.contacts.paths[:, self._seat[who]] = start, stop, length / (stop - start)
+        times = start[:, None] + (stop - start)[:, None] * np.linspace(0, 1, POINTS)
+        times[:, -1] = stop
+        self._tabulate(who, *self._walkers.along(times, self._who[who] - self._n_fixed))
+
+    def _tabulate(self, who: Indices, x: Array, y: Array) -> None:
+        """Shapes under some of those with seats, at places of their own."""
+        contacts, seats = self.contacts, self._seat[who]
         for direction in DIRECTIONS:
-            moves = self._direction[new] == direction
+            moves = self._direction[who] == direction
             if not np.any(moves):
                 continue
-            y, speed = self._offset[new][moves, None], self._speed[new][moves, None]
+            speed = self._speed[who][moves, None]
             for j, mode in enumerate(self._crowd.bridge.modes):
                 for order in range(contacts.shapes.shape[1]):
-                    shapes = mode.shape.derivative(x, y, direction, order)
+                    shapes = mode.shape.derivative(x[moves], y[moves], direction, order)
                     contacts.shapes[seats[moves], order, j] = shapes * speed**order / np.sqrt(mode.modal_mass)
 
     def _seat_bodies(self, new: Indices, seats: Indices) -> None:
@@ -104,7 +138,7 @@ class Deck:
         self.fine[:, places] = self.coarse[:, places] = 0.0
 
     def _seat_forces(self, new: Indices) -> None:
-        for row, force in self._walkers.part(self._who[new]).lines():
+        for row, force in self._walkers.part(self._who[new] - self._n_fixed).lines():
             tables, seats = force.tables(self._finer), self._seat[new[row]]
             missing = tables.shape[1] - self.contacts.combs.shape[1]
             if missing > 0:

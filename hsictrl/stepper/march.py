@@ -9,8 +9,11 @@ import numpy as np
 from hsictrl._checks import Array
 from hsictrl.coupling import MovingCrowd
 from hsictrl.stepper import kernel
-from hsictrl.stepper.clock import Clock
-from hsictrl.stepper.deck import Deck
+from hsictrl.stepper.clock import BLOCKS_IN_A_CROSSING, Clock
+from hsictrl.stepper.deck import POINTS, Deck
+
+TRACKED = 0.01     # s between the points of a table along a trajectory
+LONGEST_CROSSING = BLOCKS_IN_A_CROSSING * POINTS * TRACKED
 
 
 def march(crowd: MovingCrowd, clock: Clock, drive: Array, initial: Array) -> tuple[Array, Array]:
@@ -35,7 +38,7 @@ def march(crowd: MovingCrowd, clock: Clock, drive: Array, initial: Array) -> tup
         Likewise at every second step, by steps twice as long.
     """
     n_m = crowd.bridge.n_modes
-    blocks = clock.blocks(crowd.bridge.length / float(np.max(crowd.traffic.walkers.speed, initial=0.1)))
+    blocks = clock.blocks(_crossing(crowd))
     deck = Deck(crowd, clock.step, clock.time(blocks))
     deck.fine[:, :n_m] = deck.coarse[:, :n_m] = initial
     fine, coarse = _empty_record(clock.pairs, n_m)
@@ -46,6 +49,13 @@ def march(crowd: MovingCrowd, clock: Clock, drive: Array, initial: Array) -> tup
             clock.time(first), clock.step, deck.bridge, deck.contacts, _at_half_steps(clock, drive, first, last),
             deck.fine, deck.coarse, *(record if first >= 0 else _empty_record(last - first, n_m)))
     return fine, coarse
+
+
+def _crossing(crowd: MovingCrowd) -> float:
+    """Time in which the fastest cross the deck; so short that tables over a block resolve trajectories [s]."""
+    walkers = crowd.traffic.walkers
+    crossing = crowd.bridge.length / float(np.max(walkers.top_speed(), initial=0.1))
+    return min(crossing, LONGEST_CROSSING) if walkers.trajectories else crossing
 
 
 def _empty_record(pairs: int, n_m: int) -> tuple[Array, Array]:

@@ -181,8 +181,8 @@ def _highest(crowd: MovingCrowd) -> float:
 
 
 def _quickest(crowd: MovingCrowd) -> float:
-    """Shortest time that anybody is on the deck [s]."""
-    return float(crowd.bridge.length / np.max(crowd.traffic.walkers.speed, initial=1e-300))
+    """Shortest time in which anybody walks the length of the deck [s]."""
+    return float(crowd.bridge.length / np.max(crowd.traffic.walkers.top_speed(), initial=1e-300))
 
 
 def _clock(crowd: MovingCrowd, timepts: Any, longest: float, forced: bool, starts_there: bool) -> Clock:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import final
 
+import numpy as np
+
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 
@@ -75,6 +77,8 @@ class Estimates:
 
 def place_of(axes: Axes, name: str, value: Value) -> int:
     """Where a value stands on an axis; refuse one that doesn't."""
+    remedy = "give one number or string"
+    check.instance(name, value.item() if isinstance(value, np.generic) else value, (int, float, str), remedy)
     if value not in axes[name]:
         values = ", ".join(map(repr, axes[name]))
         raise ValueError(f"{name} must be one of {values}, got {value!r}; choose one of these")

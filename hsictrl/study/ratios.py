@@ -22,11 +22,19 @@ def ratios(rule: PercentileRule, top: Array, bottom: Array) -> tuple[Array, Arra
     One row per trial. A resample draws rows, the same of both and of all columns; the interval lies between
     percentiles of the resampled ratios, as `scipy.stats.bootstrap` has it for one pair of columns.
     """
-    blocks = [_percentiles(rule, top, counts) / _percentiles(rule, bottom, counts) for counts in _resamples(len(top))]
+    blocks = [_percentiles(rule, top, counts) / _away_from_zero(_percentiles(rule, bottom, counts))
+              for counts in _resamples(len(top))]
     outside = 50 * (1 - rule.confidence)
     low, high = np.percentile(np.concatenate(blocks), [outside, 100 - outside], axis=0)
-    estimate = _percentile(rule, top) / _percentile(rule, bottom)
+    estimate = _percentile(rule, top) / _away_from_zero(_percentile(rule, bottom))
     return estimate, low, high
+
+
+def _away_from_zero(percentiles: Array) -> Array:
+    if not np.all(percentiles):
+        raise ValueError("the percentile at the bottom of a ratio must be away from zero, got 0 in a resample of the "
+                         "trials; compare with another value, or take a higher percentile")
+    return percentiles
 
 
 def _resamples(n: int) -> Iterator[Counts]:

@@ -136,6 +136,9 @@ class Sweep:
         >>> found.ratio("storey", "high", "low").estimate.round(6)
         array([3., 3.])
         """
+        if not self.shared:
+            raise ValueError(f"a ratio must run along an axis that the trials share, got {axis!r} and none shared; "
+                             "sweep with shared={...}")
         check.choice("axis", axis, self.shared)
         rule = check.instance("rule", self.ensembles[0].rule, PercentileRule, "sweep with PercentileRule(...)")
         places = [place_of(self.axes, axis, value) for value in (top, bottom)]

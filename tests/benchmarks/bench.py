@@ -15,6 +15,7 @@ from functools import partial
 import control as ct
 import numpy as np
 from rows import Row, best, show
+from scipy.optimize import linear_sum_assignment
 
 import hsictrl as hsi
 from hsictrl.prediction.forces import modal_force
@@ -77,6 +78,47 @@ def effective() -> Row:
     plain = ct.ss(occupied.A, occupied.B, occupied.C, occupied.D)
     return Row(f"effective, {WALKERS} walkers", best(lambda: hsi.effective(occupied), 20), "ct.norm(…, 'inf')",
                best(lambda: ct.norm(plain, "inf"), 1), "≥ 500×, ≤ 10 ms")
+
+
+def reduced() -> list[Row]:
+    """A crowd of order 8, what it costs to make and to bound, and `ct.forced_response` with it and with everyone."""
+    people, places = crowd(WALKERS)
+    small = people.reduced(order=8, bridge=BRIDGE, positions=places)
+    times = np.arange(0.0, 50.0, 0.01)
+    force, few, whole = np.sin(4 * np.pi * times), hsi.couple(BRIDGE, *small), hsi.couple(BRIDGE, people, places)
+    making = best(lambda: people.reduced(order=8, bridge=BRIDGE, positions=places), 20)
+    bounding, other = best(lambda: small.bound(BRIDGE), 20), f"crowd of order {2 * WALKERS}"
+    return [Row(f"ct.forced_response, {len(times)} times, crowd of order 8", best(
+                lambda: ct.forced_response(few, times, force), 5), other, best(
+                lambda: ct.forced_response(whole, times, force), 3), "≥ 6×"),
+            Row("poles, crowd of order 8", best(few.poles, 20), other, best(whole.poles, 3), "-"),
+            Row(f"Crowd.reduced, {WALKERS} walkers to order 8", making, "-", None, "≤ 50 ms"),
+            Row(f"ReducedCrowd.bound, {small.bound(BRIDGE):.0e}", bounding, "-", None, "-")]
+
+
+def root_locus() -> list[Row]:
+    """`root_locus` against the poles of `couple` for every number of people, dense eigenvalue problems."""
+    people, random_places = crowd(WALKERS)
+    return [locus_row("equal", hsi.Pedestrian(), (np.arange(WALKERS) + 0.5) * BRIDGE.length / WALKERS, 50, "≥ 1000×"),
+            locus_row("random", people, random_places, 1, "-")]
+
+
+def locus_row(kind: str, people: hsi.Crowd | hsi.Pedestrian, places: np.ndarray, repeats: int, bar: str) -> Row:
+    start = time.perf_counter()
+    dense = [hsi.couple(BRIDGE, people.part(slice(k)) if isinstance(people, hsi.Crowd) else people, places[:k]).poles()
+             for k in range(WALKERS + 1)]
+    theirs = time.perf_counter() - start
+    locus = hsi.root_locus(BRIDGE, people, places)
+    error = max(apart(poles[~np.isnan(poles)], known) for poles, known in zip(locus.poles, dense, strict=True))
+    ours = best(lambda: hsi.root_locus(BRIDGE, people, places), repeats)
+    return Row(f"root_locus, 0 to {WALKERS} {kind} walkers, error {error:.0e} rad/s", ours,
+               f"{WALKERS + 1} times couple(…).poles()", theirs, bar)
+
+
+def apart(poles: np.ndarray, known: np.ndarray) -> float:
+    """Largest distance between poles, each matched to its own."""
+    distances = np.abs(np.subtract.outer(poles, known))
+    return float(distances[linear_sum_assignment(distances)].max())
 
 
 def trial() -> list[Row]:
@@ -213,9 +255,11 @@ def rows() -> Iterator[Row]:
     yield coupling()
     yield from frequency_response()
     yield effective()
+    yield from reduced()
+    yield from root_locus()
     yield from trial()
     yield from stepping()
 
 
 if __name__ == "__main__":
-    show("one thread, one run, medians", rows, memory)
+    show("systems", "one thread, one run, medians", rows, memory)

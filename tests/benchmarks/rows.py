@@ -1,17 +1,23 @@
-"""Rows of a table that holds ours against another road, and how they are timed and printed."""
+"""Rows that hold ours against another road: how they are timed, printed, and handed to the documentation."""
 
 from __future__ import annotations
 
+import json
 import os
+import platform
 import sys
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+PUBLISHED = Path(__file__).parents[2] / "docs" / "benchmarks.json"
 UNITS = {"min": 60.0, "s": 1.0, "ms": 1e-3, "µs": 1e-6}
 
 
@@ -45,13 +51,45 @@ def told(seconds: float) -> str:
     return f"{seconds / UNITS[unit]:.3g} {unit}"
 
 
-def show(title: str, rows: Callable[[], Iterable[Row]], *notes: Callable[[], str]) -> None:
-    """Print the table, and notes below it."""
+def show(name: str, title: str, rows: Callable[[], Iterable[Row]], *notes: Callable[[], str]) -> None:
+    """Print and publish a table of times, and notes below it."""
+    check_threads()
+    cells = [[row.what, told(row.ours), row.other, *compared(row), row.bar] for row in rows()]
+    publish(name, title, ["what", "ours", "other road", "theirs", "ratio", "bar"], cells, [note() for note in notes])
+
+
+def check_threads() -> None:
     if os.environ.get("OPENBLAS_NUM_THREADS") != "1":
         sys.exit("OPENBLAS_NUM_THREADS must be 1, so that one thread is compared with one; use make bench")
-    table = Table("what", "ours", "other road", "theirs", "ratio", "bar", title=title)
-    for row in rows():
-        compared = row.theirs is not None
-        theirs, ratio = (told(row.theirs), f"{row.theirs / row.ours:.3g}×") if compared else ("-", "-")
-        table.add_row(row.what, told(row.ours), row.other, theirs, ratio, row.bar)
-    Console(width=150).print(table, *(note() for note in notes))
+
+
+def compared(row: Row) -> tuple[str, str]:
+    """Seconds of the other road, and how many times ours they are."""
+    return ("-", "-") if row.theirs is None else (told(row.theirs), f"{row.theirs / row.ours:.3g}×")
+
+
+def publish(name: str, title: str, columns: list[str], cells: list[list[str]], notes: list[str]) -> None:
+    """Print a table, and put it where the documentation reads it, beside those of other runs."""
+    table = Table(*columns, title=title)
+    for row in cells:
+        table.add_row(*row)
+    Console(width=150).print(table, *notes)
+    tables = json.loads(PUBLISHED.read_text(encoding="utf-8")) if PUBLISHED.exists() else {}
+    tables[name] = {"where": where(), "columns": columns, "rows": cells, "notes": notes}
+    PUBLISHED.write_text(json.dumps(tables, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def where() -> dict[str, str]:
+    """When and on what a table was measured, and what else the machine did: a load of one or two is the run itself."""
+    versions = [f"{package} {version(package)}" for package in ("hsictrl", "control", "numpy", "scipy", "numba")]
+    machine = f"{processor()}, {os.cpu_count()} cores, load average {os.getloadavg()[0]:.1f}"
+    return {"date": date.today().isoformat(), "machine": machine,
+            "versions": ", ".join([f"Python {platform.python_version()}", *versions])}
+
+
+def processor() -> str:
+    """Its name, from where Linux keeps it, or what Python knows."""
+    cpuinfo = Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text(encoding="utf-8").splitlines() if cpuinfo.exists() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or platform.machine()

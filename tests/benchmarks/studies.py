@@ -128,4 +128,4 @@ def rows() -> Iterator[Row]:
 
 
 if __name__ == "__main__":
-    show("studies, one thread in each process, one run, medians or extrapolated", rows)
+    show("studies", "studies, one thread in each process, one run, medians or extrapolated", rows)

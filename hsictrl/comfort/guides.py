@@ -1,9 +1,4 @@
-"""Load models and comfort classes of Sétra, HiVoSS, ISO 10137 and EN 1990.
-
-Sources: Sétra (2006), Footbridges: assessment of vibrational behaviour; HiVoSS (2008), Design of footbridges:
-guideline; ISO 10137 (2007); EN 1990 A2.4.3.2. They were read through public manuals and implementations; a
-value that none of these gave is marked "unverified: not checked against the guide" or "the standard".
-"""
+"""Load models of Sétra and HiVoSS for streams of walkers: from a density to a design acceleration."""
 
 from __future__ import annotations
 
@@ -13,22 +8,12 @@ from typing import final
 import numpy as np
 
 from hsictrl import _checks as check
-
-__all__ = [
-    "DesignResponse", "comfort_class", "design_acceleration", "en1990_limit", "equivalent_pedestrians",
-    "iso10137_limit", "load_reduction",
-]
+from hsictrl._checks import Direction
+from hsictrl.comfort.classes import comfort_class
 
 _GUIDES = ("hivoss", "setra")
-_VERTICAL_FORCE = 280.0
+_FORCES = {"vertical": 280.0, "lateral": 35.0}    # N, of the first harmonic
 _NEGLIGIBLE_MASS_RATIO = 0.05
-
-_CLASS_BOUNDS = {"vertical": (0.5, 1.0, 2.5), "lateral": (0.1, 0.3, 0.8)}
-
-_EN1990_LIMITS = {
-    ("vertical", "normal"): 0.7, ("vertical", "exceptional"): 0.7,
-    ("lateral", "normal"): 0.2, ("lateral", "exceptional"): 0.4,
-}
 
 # (guide, direction, harmonic): (corners [Hz], top [-])
 _TRAPEZOIDS = {
@@ -38,101 +23,7 @@ _TRAPEZOIDS = {
     ("setra", "vertical", 1): ((1.0, 1.7, 2.1, 2.6), 1.0),
     ("setra", "vertical", 2): ((2.6, 3.4, 4.2, 5.0), 0.25),
 }
-
-
-def comfort_class(acceleration: float, direction: str = "vertical") -> str:
-    """Return the comfort class of a peak acceleration.
-
-    Parameters
-    ----------
-    acceleration : float
-        Peak acceleration of the deck [m/s²].
-    direction : {"vertical", "lateral"}
-        Direction of the acceleration.
-
-    Returns
-    -------
-    str
-        "CL1" (maximum comfort), "CL2", "CL3" or "CL4" (not acceptable).
-
-    Notes
-    -----
-    Vertical: CL1 < 0.5 ≤ CL2 < 1.0 ≤ CL3 ≤ 2.5 < CL4. Lateral: CL1 < 0.1 ≤ CL2 < 0.3 ≤ CL3 ≤ 0.8 < CL4; its
-    bound of 0.3 is unverified: not checked against the guide. To which class a bound itself belongs is our reading.
-
-    Source: HiVoSS (2008), comfort classes, and the ranges of Sétra (2006).
-
-    Examples
-    --------
-    >>> comfort_class(0.49), comfort_class(0.5), comfort_class(2.5), comfort_class(2.51)
-    ('CL1', 'CL2', 'CL3', 'CL4')
-    """
-    a = check.number("acceleration", acceleration, least=0, remedy="give the peak of its absolute value in m/s²")
-    low, middle, high = _CLASS_BOUNDS[check.choice("direction", direction, check.DIRECTIONS)]
-    return f"CL{1 + (a >= low) + (a >= middle) + (a > high)}"
-
-
-def en1990_limit(direction: str = "vertical", *, crowd: str = "normal") -> float:
-    """Return the comfort limit of EN 1990 for the peak acceleration.
-
-    Parameters
-    ----------
-    direction : {"vertical", "lateral"}
-        Direction of the acceleration.
-    crowd : {"normal", "exceptional"}
-        Normal use or exceptional crowd conditions.
-
-    Returns
-    -------
-    float
-        Limit of the peak acceleration of any part of the deck [m/s²].
-
-    Notes
-    -----
-    The code gives 0.7 vertical, 0.2 horizontal and 0.4 in exceptional crowds; we read the last as horizontal,
-    so that the vertical limit is the same in both.
-
-    Source: EN 1990 A2.4.3.2.
-
-    Examples
-    --------
-    >>> en1990_limit(), en1990_limit("lateral"), en1990_limit("lateral", crowd="exceptional")
-    (0.7, 0.2, 0.4)
-    """
-    check.choice("direction", direction, check.DIRECTIONS)
-    return _EN1990_LIMITS[direction, check.choice("crowd", crowd, ("normal", "exceptional"))]
-
-
-def iso10137_limit(frequency: float, multiplier: float = 60.0) -> float:
-    """Return the limit of the vertical RMS acceleration by ISO 10137.
-
-    Parameters
-    ----------
-    frequency : float
-        Frequency of the vibration, from 1 to 8 [Hz].
-    multiplier : float
-        Multiplier of the base curve: 60 for footbridges, 30 where people stand on them [-].
-
-    Returns
-    -------
-    float
-        Limit of the RMS acceleration [m/s²].
-
-    Notes
-    -----
-    Base curve: 0.010/√f from 1 to 4 Hz, 0.005 from 4 to 8 Hz. Neither multiplier is checked against the
-    standard.
-
-    Source: ISO 10137 (2007), base curve of vertical vibration.
-
-    Examples
-    --------
-    >>> iso10137_limit(1.0), iso10137_limit(4.0, multiplier=30)
-    (0.6, 0.15)
-    """
-    f = check.number("frequency", frequency, least=1, most=8, remedy="outside it, use the standard's own curve")
-    factor = check.number("multiplier", multiplier, above=0, remedy="60 is usual, 30 where people stand")
-    return factor * 0.010 / min(f, 4.0) ** 0.5
+GUIDE_LOADS: tuple[tuple[str, Direction], ...] = (("hivoss", "vertical"), ("hivoss", "lateral"), ("setra", "vertical"))
 
 
 def equivalent_pedestrians(density: float, *, area: float, damping: float) -> float:
@@ -211,10 +102,14 @@ def load_reduction(
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignResponse:
-    """The vertical design acceleration and what it was computed from.
+    """The design acceleration of a guide and what it was computed from.
 
     Parameters
     ----------
+    guide : {"hivoss", "setra"}
+        The guide.
+    direction : {"vertical", "lateral"}
+        Direction of load and acceleration.
     acceleration : float
         Peak acceleration where the mode shape is one [m/s²].
     equivalent_pedestrians : float
@@ -234,18 +129,25 @@ class DesignResponse:
     (1.8116, 55000.0)
     """
 
+    guide: str
+    direction: str
     acceleration: float
     equivalent_pedestrians: float
     reduction: float
     frequency: float
     modal_mass: float
 
+    @property
+    def comfort_class(self) -> str:
+        """Comfort class of the acceleration."""
+        return comfort_class(self.acceleration, self.direction)
+
 
 def design_acceleration(
     *, frequency: float, damping: float, modal_mass: float, loaded_area: float, density: float, area: float,
-    crowd_modal_mass: float, guide: str = "hivoss",
+    crowd_modal_mass: float, guide: str = "hivoss", direction: str = "vertical",
 ) -> DesignResponse:
-    """Return the vertical design acceleration of one mode under a stream of walkers.
+    """Return the design acceleration of one mode under a stream of walkers.
 
     Parameters
     ----------
@@ -256,7 +158,7 @@ def design_acceleration(
     modal_mass : float
         Modal mass of the empty footbridge [kg].
     loaded_area : float
-        ∫∫|φ| dx dy over the deck, for the shape φ that goes with the modal mass [m²].
+        ∫∫|φ| dx dy over the deck, for the shape φ, in the direction of the load, that goes with the modal mass [m²].
     density : float
         Walkers per area of the deck [1/m²].
     area : float
@@ -264,7 +166,9 @@ def design_acceleration(
     crowd_modal_mass : float
         Modal mass of the walkers, 70 kg each: 70 d ∫∫φ² dx dy [kg].
     guide : {"hivoss", "setra"}
-        The guide whose load reduction applies.
+        The guide whose load applies.
+    direction : {"vertical", "lateral"}
+        Direction of the load; lateral for HiVoSS only.
 
     Returns
     -------
@@ -273,8 +177,8 @@ def design_acceleration(
 
     Notes
     -----
-    Resonance with P n′ ψ(f) cos(2πft), P = 280 N, applied with the sign of the shape:
-    a = P ψ n′ ∫∫|φ| dx dy / (2 ξ m), the larger of the first two harmonics. A crowd of more than 5 % of the
+    Resonance with P n′ ψ(f) cos(2πft), P = 280 N vertical or 35 N lateral, applied with the sign of the shape:
+    a = P ψ n′ ∫∫|φ| dx dy / (2 ξ m), the largest of the harmonics. A crowd of more than 5 % of the
     modal mass is added to it and lowers the frequency by √(m/(m + Δm)).
 
     Source: Sétra (2006) and HiVoSS (2008), load models of streams.
@@ -291,22 +195,29 @@ def design_acceleration(
     f, m = _occupied(frequency, modal_mass, crowd_modal_mass)
     phi = check.number("loaded_area", loaded_area, above=0, remedy="integrate |shape| over the deck, in m²")
     n = equivalent_pedestrians(density, area=area, damping=damping)
-    psi = max(load_reduction(f, guide, harmonic=harmonic) for harmonic in (1, 2))
-    a = _VERTICAL_FORCE * psi * n * phi / (2 * damping * m)
-    return DesignResponse(acceleration=a, equivalent_pedestrians=n, reduction=psi, frequency=f, modal_mass=m)
+    psi = max(load_reduction(f, guide, harmonic=harmonic, direction=direction)
+              for harmonic in _harmonics(guide, direction))
+    a = _FORCES[direction] * psi * n * phi / (2 * damping * m)
+    return DesignResponse(guide=guide, direction=direction, acceleration=a, equivalent_pedestrians=n, reduction=psi,
+                          frequency=f, modal_mass=m)
 
 
 def _trapezoid(guide: str, direction: str, harmonic: int) -> tuple[tuple[float, ...], float]:
-    check.choice("guide", guide, _GUIDES)
-    check.choice("direction", direction, check.DIRECTIONS)
-    known = [h for g, d, h in _TRAPEZOIDS if (g, d) == (guide, direction)]
-    if not known:
-        raise ValueError(f"direction must be one whose load {guide} gives, got {direction!r}; choose another guide")
+    known = _harmonics(guide, direction)
     if harmonic not in known:
         only = " or ".join(map(str, known))
         raise ValueError(f"harmonic must be {only} for the {direction} load of {guide}, got {harmonic!r}; "
                          "give one that the guide has")
     return _TRAPEZOIDS[guide, direction, harmonic]
+
+
+def _harmonics(guide: str, direction: str) -> list[int]:
+    check.choice("guide", guide, _GUIDES)
+    check.choice("direction", direction, check.DIRECTIONS)
+    known = [h for g, d, h in _TRAPEZOIDS if (g, d) == (guide, direction)]
+    if not known:
+        raise ValueError(f"direction must be one whose load {guide} gives, got {direction!r}; choose another guide")
+    return known
 
 
 def _occupied(frequency: float, modal_mass: float, crowd_modal_mass: float) -> tuple[float, float]:

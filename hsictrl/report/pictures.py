@@ -1,0 +1,57 @@
+"""Pictures of an assessment, each a data URI."""
+
+from __future__ import annotations
+
+import base64
+from typing import cast
+
+import control as ct
+import numpy as np
+
+from hsictrl import plots
+from hsictrl.assessment import Assessment
+from hsictrl.coupling import OccupiedBridge
+from hsictrl.report.sections import Picture
+from hsictrl.resonance import effective, frf
+
+BAND, LINES = (0.5, 1.5), 2001    # of the frequency of the mode in resonance
+MODELS = ("MF", "PMC")
+WIDTH, WIDER = 4.8, 6.4           # inches; narrow, so that letters can be read on a narrow screen
+
+
+def band_frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
+    """Frequency response about the first mode of a bridge [m/s² per N]."""
+    return frf(system, system.bridge.modes[0].frequency * np.linspace(*BAND, LINES))
+
+
+def shapes_picture(found: Assessment) -> Picture:
+    """The mode shapes, over the crowd of the first trial."""
+    bridge, crowd = found.bridge, cast(OccupiedBridge, found.prediction("PMC").system)
+    plot = plots.modes_plot(bridge, {"standing crowd of trial 0": crowd.positions})
+    size = (WIDER, 1.6 * (bridge.n_modes + 1))
+    return _picture(plot, size, f"Shapes of the {bridge.n_modes} mode(s) along the deck, and a plan of the deck with a "
+                    "crowd on it", "Mode shapes, and where people stand in trial 0.")
+
+
+def response_pictures(found: Assessment) -> list[Picture]:
+    """Frequency responses, one history, and how the percentile settles."""
+    first = [found.prediction(model) for model in MODELS]
+    systems = [cast(OccupiedBridge, one.system) for one in first]     # neither model is MC
+    ensembles = [found.mf, found.pmc]
+    responses = plots.frf_plot([band_frf(system) for system in systems], labels=("empty bridge", "occupied bridge"),
+                               effective=[effective(system) for system in systems])
+    history = plots.response_plot([one.response for one in first], labels=MODELS)
+    settles = plots.convergence_plot(ensembles, labels=MODELS)
+    where, size = f"under {found.flow}, trial 0 of seed {found.pmc.seed}", (WIDTH, 3.2)
+    return [
+        _picture(responses, size, "Accelerance over frequency, empty and occupied, with the peaks marked",
+                 f"Frequency responses at the antinode of mode {found.mode}, empty and with its crowd, {where}."),
+        _picture(history, size, "Acceleration over time without and with interaction, with running RMS and peaks",
+                 f"One history {where}, without (MF) and with (PMC) interaction; bold: running 1-s RMS."),
+        _picture(settles, size, "Percentile of the peak acceleration over the number of trials, with its interval",
+                 f"How {found.pmc.rule.labels[0]} of the peak acceleration settles under {found.flow}.")]
+
+
+def _picture(plot: ct.ControlPlot, size: tuple[float, float], alternative: str, caption: str) -> Picture:
+    drawn = base64.b64encode(plots.svg(plot, size=size).encode()).decode()
+    return Picture(source=f"data:image/svg+xml;base64,{drawn}", alternative=alternative, caption=caption)
