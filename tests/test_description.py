@@ -3,6 +3,7 @@
 import re
 import textwrap
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -201,3 +202,9 @@ def test_a_goal_stays_when_densities_take_the_place_of_rows_unless_there_are_sev
     assert same.aims == [(hsi.CrowdFlow(density=density), "CL2") for density in (0.3, 0.4, 0.6)]
     with pytest.raises(ValueError, match=r"goal must be one for all densities .*, got CL1, CL2; write one"):
         Description(flows=flows, goals=("CL1", "CL2")).at_densities([0.3])
+
+
+def test_the_example_of_a_design_has_a_goal_for_each_class():
+    example = Path(__file__).parent.parent / "examples" / "design.toml"
+    assert [(flow.traffic_class, goal) for flow, goal in read_description(example).aims] == [
+        ("TC2", "CL2"), ("TC3", "CL3")]

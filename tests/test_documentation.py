@@ -23,6 +23,7 @@ BLOCK = re.compile(r"^(<!-- not run: [^\n]+ -->\n+)?```python\n(.*?)^```(?:\s+``
 GIVEN = {
     "fe.md": "from shutil import copy\nfor name in 'nodes', 'modes':\n"
              "    copy(EXAMPLES / f'finite_elements_{name}.csv', f'{name}.csv')\n",
+    "trajectories.md": "from runpy import run_path\nglobals().update(run_path(EXAMPLES / 'trajectories.py'))\n",
     "identify.md": "from runpy import run_path\n_, time, acceleration = run_path(DOCS / 'identify.py')['record']()\n",
 }
 

@@ -131,6 +131,16 @@ def test_numbers_are_those_of_the_assessments(found, page):
         assert all(remark in text for remark in one.remarks)
 
 
+def test_simulated_accelerations_stand_beside_the_guides_of_the_mode_in_resonance_alone(found, page):
+    table, = (one for one in page.all("table") if "by the guides" in one["text"])
+    rows = [" ".join(row.split()) for row in re.split(r"(?=TC1, 15|4 persons)", table["text"])[1:]]
+    assert len(rows) == 4        # two flows, two critical modes
+    for row, (one, mode) in zip(rows, ((one, mode) for one in found for mode in (0, 1)), strict=True):
+        assert f"{mode}, vertical" in row
+        assert (f"{one.pmc.estimate:#.3g}" in row) == (mode == 0)
+        assert row.endswith("– –") == (mode == 1)
+
+
 def test_the_answer_is_of_the_largest_acceleration(found, page):
     largest = max(found, key=lambda one: one.pmc.estimate)
     low, high = largest.pmc.interval

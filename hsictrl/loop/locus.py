@@ -62,12 +62,12 @@ class RootLocus:
 
     @property
     def frequency(self) -> Array:
-        """Natural frequencies |p|/2π of the poles [Hz]."""
+        """Natural frequencies ``|p|/2π`` of the poles [Hz]."""
         return np.abs(self.poles) / (2 * np.pi)
 
     @property
     def damping(self) -> Array:
-        """Damping ratios −Re p/|p| of the poles [-]."""
+        """Damping ratios ``−Re p/|p|`` of the poles [-]."""
         return -self.poles.real / np.abs(self.poles)
 
     def to_map(self) -> ct.PoleZeroData:

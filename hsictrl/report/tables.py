@@ -26,7 +26,7 @@ NONE: Cell = ("–",)
 
 def answer_table(found: Sequence[Assessment]) -> Table:
     """A row per flow: acceleration, reduction, class, and the verdict on a goal."""
-    peak = f"a{rule(found[0].pmc).percentile:g}"
+    peak = _percentile(found)
     head = ["Traffic", f"{peak} without interaction (MF) [m/s²]", f"{peak} with interaction (PMC) [m/s²]",
             "Reduction R_HSI [-]", "Comfort class, without → with"]
     rows = [_answer(one) for one in found]
@@ -76,8 +76,9 @@ def effective_table(found: Sequence[Assessment]) -> Table:
 def guide_table(found: Sequence[Assessment]) -> Table:
     """The guides' load cases, side by side."""
     head = ["Traffic", "Mode, direction", "f [Hz]", "Modal mass [kg]", "n′ [1/m²]",
-            *(f"{name} a_max [m/s²]" for name in GUIDES.values())]
-    return Table(caption="Design accelerations by the guides", head=head,
+            *(f"{name} a_max [m/s²]" for name in GUIDES.values()),
+            *(f"{_percentile(found)} {model} [m/s²]" for model in ("MF", "PMC"))]
+    return Table(caption="Design accelerations by the guides, and those simulated for the mode in resonance", head=head,
                  rows=[row for one in found for row in _guides(one)])
 
 
@@ -119,9 +120,11 @@ def _guides(one: Assessment) -> Iterator[list[Cell]]:
     for (mode, direction), same in groupby(one.guides, key=lambda case: (case.mode, case.response.direction)):
         cases = {case.response.guide: case for case in same}
         first = next(iter(cases.values())).response
+        resonant = (mode, direction) == (one.mode, "vertical")
+        simulated = [_estimate(one.mf), _estimate(one.pmc)] if resonant else [NONE, NONE]
         yield [(str(one.flow),), (f"{mode}, {direction}",), (significant(first.frequency, 4),),
                (f"{first.modal_mass:.0f}",), (significant(first.equivalent_pedestrians),),
-               *(_guide(cases.get(guide)) for guide in GUIDES)]
+               *(_guide(cases.get(guide)) for guide in GUIDES), *simulated]
 
 
 def _guide(case: GuideCase | None) -> Cell:
@@ -129,6 +132,10 @@ def _guide(case: GuideCase | None) -> Cell:
         return NONE
     found = case.response
     return (f"{significant(found.acceleration)} {found.comfort_class}", f"ψ = {significant(found.reduction)}")
+
+
+def _percentile(found: Sequence[Assessment]) -> str:
+    return f"a{rule(found[0].pmc).percentile:g}"
 
 
 def _estimate(ensemble: Ensemble) -> Cell:
