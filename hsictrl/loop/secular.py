@@ -99,7 +99,7 @@ def newcomer(secular: Secular, body: Pedestrian, row: Array) -> Complex:
     pole, conjugate = own_poles(body.omega, body.damping)
     with np.errstate(all="ignore"):
         stiffness = secular.stiffness(np.array([pole]))[0][0]
-    shift = 0j
+    shift = 1e-3 * pole             # among its like, whose pole it must not start from
     if np.all(np.isfinite(stiffness)):
         shift = pole**4 / (pole - conjugate) * body.sprung_mass * (row @ np.linalg.pinv(stiffness) @ row)
     guess = pole + shift * min(1.0, FAR * abs(pole) / max(abs(shift), 1e-300))
