@@ -125,6 +125,17 @@ def test_the_iteration_settles_without_the_host(monkeypatch, n_modes):
         assert np.isfinite(hsi.root_locus(beam(n_modes), crowd, x).poles[-1]).all()
 
 
+def test_a_pole_found_twice_is_noticed(monkeypatch):
+    people, x = drawn(4)
+    rows = beam().participation(x)
+    equation = secular.Secular(beam(), people, rows)
+    poles = hsi.couple(beam(), people, x).poles()
+    assert equation.trace == pytest.approx(poles.sum().real, rel=1e-12)
+    twice = np.append(poles[:-1], poles[0])
+    monkeypatch.setattr(secular, "_zeros", lambda secular, guess: twice)
+    assert secular.secular_poles(equation, poles) is None
+
+
 def test_branches_are_found_again_when_their_order_is_lost():
     """Four points that pass each other in the plane, dealt out anew each time."""
     rng, t = np.random.default_rng(0), np.linspace(0, 1, 50)[:, None]

@@ -34,13 +34,13 @@ def test_each_is_the_pole_of_its_crowd_that_dominates_the_response(frequency, n_
 
 
 def test_tuned_bodies_take_the_pole_where_the_root_locus_over_their_mass_does():
-    """At 3.5 Hz bridge and bodies exchange poles; the locus takes 60 steps on the way."""
-    bridge, flow = beam(3.5), hsi.CrowdFlow(persons=60)
-    poles = found(bridge, 60, trials=2).poles
-    for pole, rng in zip(poles, np.random.default_rng(1).spawn(2), strict=True):
-        people, places = flow.crowd(bridge, rng)
-        locus = hsi.root_locus(bridge, people, places, parameter="mass", values=np.linspace(1e-3, 70, 60))
-        assert abs(locus.poles[-1, 0] - pole) < 1e-9
+    """At 3.5 Hz bridge and bodies exchange poles; crowds 2, 13 and 15 lead astray those who take too long steps."""
+    bridge, flow = beam(3.5), hsi.CrowdFlow(persons=150)
+    poles, streams = found(bridge, 150, trials=16).poles, np.random.default_rng(1).spawn(16)
+    for i in (2, 13, 15):
+        people, places = flow.crowd(bridge, streams[i])
+        locus = hsi.root_locus(bridge, people, places, parameter="mass", values=np.linspace(1e-3, 70, 30))
+        assert abs(locus.poles[-1, 0] - poles[i]) < 1e-9
 
 
 def test_each_mode_has_its_own():
