@@ -58,12 +58,12 @@ class PoleScatter:
 
     @property
     def frequency(self) -> Array:
-        """Natural frequencies |p|/2π [Hz]."""
+        """Natural frequencies ``|p|/2π`` [Hz]."""
         return np.abs(self.poles) / (2 * np.pi)
 
     @property
     def damping(self) -> Array:
-        """Damping ratios −Re p/|p| [-]."""
+        """Damping ratios ``−Re p/|p|`` [-]."""
         return -self.poles.real / np.abs(self.poles)
 
     @property
