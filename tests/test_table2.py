@@ -249,7 +249,7 @@ def test_all_studies_share_one_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
         samples = np.random.default_rng(1).uniform(1.0, 2.0, (20, sizes[type(trial)]))
         return hsi.Ensemble(samples=samples, estimate=samples[0], interval=(samples[0], samples[0]), converged=False,
                             reason="", seed=1, rule=rule)
-    for module in (fig4, readings, studies):
+    for module in (readings, studies):
         monkeypatch.setattr(module, "monte_carlo", made_up)
     for module in (fig8, load_cycles, readings, table2):    # whose bootstraps take long
         monkeypatch.setattr(module, "ratio", lambda first, second: Interval(1.0, 0.9, 1.1))

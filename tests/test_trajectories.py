@@ -472,6 +472,12 @@ def test_texts_that_are_refused(content: str, message: str, tmp_path: Path) -> N
         hsi.Traffic.from_trajectories(text(tmp_path / "a.dat", content), BRIDGE, rng=np.random.default_rng(1))
 
 
+def test_files_that_are_neither_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "picture.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    with pytest.raises(ValueError, match=r"picture\.png: the file must be SQLite or text in UTF-8, got neither; give"):
+        read(tmp_path / "picture.png")
+
+
 def column(**changes) -> dict:
     return TABLE | changes
 
@@ -481,7 +487,6 @@ LEAVING = hsi.Traffic([walker(trajectory=hsi.Trajectory([0.0, 60.0], [0.0, 60.0]
 
 @pytest.mark.parametrize(("call", "message"), [
     (lambda: read("no such file"), "no such file: the trajectories must be a file that can be read, got No such file"),
-    (lambda: read(ROOT / "docs" / "images" / "fig8.png"), "the file must be SQLite or text in UTF-8, got neither"),
     (lambda: read(np.zeros((3, 4))), "table must be a file, or have columns by name, got ndarray; give the name"),
     (lambda: read({"id": [1], "x": [1.0], "y": [0.0]}), "must have a column 'time' or 'frame', got 'id', 'x', 'y'"),
     (lambda: read({"time": [1], "x": [1.0], "y": [0.0]}), "table: the table must have a column 'id'"),

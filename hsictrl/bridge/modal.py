@@ -9,11 +9,11 @@ from typing import Any, final
 
 import control as ct
 import numpy as np
-from numpy.typing import NDArray
 
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge.beams import beam_modes
+from hsictrl.bridge.deck import Deck
 from hsictrl.bridge.mode import Mode
 from hsictrl.bridge.plant import block
 from hsictrl.bridge.shapes import Shape, SineShape
@@ -23,7 +23,7 @@ from hsictrl.pedestrian import Body, Crowd
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Footbridge:
+class Footbridge(Deck):
     """A footbridge: its modes and its deck.
 
     The deck reaches from x = 0 to `length` and from y = −`width`/2 to `width`/2; off it every mode
@@ -218,11 +218,6 @@ class Footbridge:
         return len(self.modes)
 
     @property
-    def area(self) -> float:
-        """Walkable surface of the deck, A [m²]."""
-        return self.length * self.width
-
-    @property
     def omega(self) -> Array:
         """Natural angular frequencies ω_Bj, shape (n_m,) [rad/s]."""
         return np.array([mode.omega for mode in self.modes])
@@ -303,74 +298,6 @@ class Footbridge:
         """
         shape = self.mode(mode).shape
         return bool(np.any(shape(*shape.antinode, "vertical")))
-
-    def carries(self, positions: Any) -> NDArray[np.bool_]:
-        """Which places lie on the deck.
-
-        Parameters
-        ----------
-        positions : array_like, shape (n,) or (n, 2)
-            Places x, or (x, y) [m].
-
-        Returns
-        -------
-        array of bool, shape (n,)
-
-        Examples
-        --------
-        >>> reference_bridge(frequency=2.0).carries([-1.0, 25.0])
-        array([False,  True])
-        """
-        x, y = check.points("positions", positions).T
-        return np.asarray((x >= 0) & (x <= self.length) & (np.abs(y) <= self.width / 2))
-
-    def carries_across(self, offsets: Any) -> NDArray[np.bool_]:
-        """Which offsets from the centre line lie on the deck, so that a walker who keeps one is on it all along.
-
-        Parameters
-        ----------
-        offsets : array_like, shape (n,)
-            Places y across the deck [m].
-
-        Returns
-        -------
-        array of bool, shape (n,)
-
-        Examples
-        --------
-        >>> reference_bridge(frequency=2.0).carries_across([-1.0, 2.0])      # 3 m wide
-        array([ True, False])
-        """
-        y = check.numbers("offsets", offsets, ndim=1, remedy="give one place y in m per walker")
-        return self.carries(np.column_stack([np.zeros_like(y), y]))
-
-    def on_deck(self, name: str, positions: Any) -> Array:
-        """Places on the deck as (n, 2) coordinates; refuse any that lie off it.
-
-        Parameters
-        ----------
-        name : str
-            What to call the places in a refusal.
-        positions : array_like, shape (n,) or (n, 2)
-            Places x, or (x, y) [m].
-
-        Returns
-        -------
-        array, shape (n, 2)
-            Coordinates x, y [m].
-
-        Examples
-        --------
-        >>> reference_bridge(frequency=2.0).on_deck("positions", [10.0, 25.0]).shape
-        (2, 2)
-        """
-        places = check.points(name, positions)
-        carried = self.carries(places)
-        if not np.all(carried):
-            i = int(np.argmin(carried))
-            raise ValueError(f"{name} must lie on the deck, 0 ≤ x ≤ {self.length:g} and |y| ≤ {self.width / 2:g} m, "
-                             f"got {name}[{i}] = ({places[i, 0]:g}, {places[i, 1]:g}); move it, or leave it out")
-        return places
 
     def participation(self, positions: Any, direction: Any = "vertical", order: int = 0) -> Array:
         """Rows with which points take part in the modes: mass-normalised shapes, zero off the deck.
