@@ -260,8 +260,8 @@ def test_models_for_which_bridges_share_nothing_have_the_digits_of_trials_of_one
 
 def test_further_modes_change_as_the_first_does_and_respond(tmp_path: Path) -> None:
     found = read(tmp_path, "[bridge]\nkind = 'simply_supported'\nlength = 50.0\nwidth = 3.0\nmass = 5e4\n"
-                           "frequency = 2.0\ndamping = [0.005, 0.01]\nn_modes = 2\n[traffic]\npersons = 8\n[sweep]\nmodel = 'PMC'\n"
-                           "frequency = [1.0, 1.5]\nmodal_mass = 50e3\ndamping = 0.01")
+                           "frequency = 2.0\ndamping = [0.005, 0.01]\nn_modes = 2\n[traffic]\npersons = 8\n[sweep]\n"
+                           "model = 'PMC'\nfrequency = [1.0, 1.5]\nmodal_mass = 50e3\ndamping = 0.01")
     peak = found.trial(density=8 / 150, frequency=1.0, force="zivanovic")(trial_rng(1, 0))
     bridge = hsi.Footbridge.simply_supported(length=50.0, width=3.0, mass=1e5, frequency=1.0, damping=[0.01, 0.02],
                                              n_modes=2)
