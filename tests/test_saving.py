@@ -41,6 +41,12 @@ def test_traffic_comes_back_to_the_last_bit(name: str, tmp_path: Path) -> None:
         np.testing.assert_array_equal(*(hsi.predict(model, BRIDGE, one).response.y for one in (theirs, ours)))
 
 
+@pytest.mark.parametrize("time", [np.int64(-3), np.float32(-3.0)])
+def test_numbers_of_numpy_are_numbers(time, tmp_path: Path) -> None:
+    hsi.Traffic([STRAIGHT], drawn_from=time).save(tmp_path / "traffic.npz")
+    assert hsi.Traffic.load(tmp_path / "traffic.npz").drawn_from == -3.0
+
+
 def test_a_file_appears_when_all_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, two = tmp_path / "traffic.npz", hsi.Traffic([STRAIGHT, STRAIGHT])
     hsi.Traffic([STRAIGHT]).save(path)
