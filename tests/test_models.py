@@ -190,6 +190,12 @@ def test_walkers_made_by_hand_step_where_they_are_at_mid_window():
     assert relative(accelerations("SF", bridge, traffic, timepts=TIMES), expected) < 1e-9
 
 
+@pytest.mark.parametrize("model", ["SF", "MFAM", "PMC"])
+def test_whoever_stands_for_the_crowd_stands_on_the_deck(model):
+    with pytest.raises(ValueError, match=r"must lie on the deck, .* got .*\[0\] = \(95, 0\); move it"):
+        predict(model, reference_bridge(frequency=2.0), Traffic([walker()], standing=at(95.0)))
+
+
 def test_the_last_to_arrive_take_the_places_of_the_standing_crowd():
     bridge = reference_bridge(frequency=2.0)
     early, middle, late = (walker(step_frequency=f, arrival=t) for f, t in ((1.8, 0.0), (1.9, 5.0), (2.1, 9.0)))

@@ -41,6 +41,12 @@ def test_traffic_comes_back_to_the_last_bit(name: str, tmp_path: Path) -> None:
         np.testing.assert_array_equal(*(hsi.predict(model, BRIDGE, one).response.y for one in (theirs, ours)))
 
 
+@pytest.mark.parametrize("time", [np.int64(-3), np.float32(-3.0)])
+def test_numbers_of_numpy_are_numbers(time, tmp_path: Path) -> None:
+    hsi.Traffic([STRAIGHT], drawn_from=time).save(tmp_path / "traffic.npz")
+    assert hsi.Traffic.load(tmp_path / "traffic.npz").drawn_from == -3.0
+
+
 def test_a_file_appears_when_all_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, two = tmp_path / "traffic.npz", hsi.Traffic([STRAIGHT, STRAIGHT])
     hsi.Traffic([STRAIGHT]).save(path)
@@ -88,6 +94,14 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         hsi.Traffic.load(path)
     with pytest.raises(ValueError, match=ours):
         hsi.Traffic.load(with_head(path, mark="other"))
+    for flag in (1, 32):      # a flipped bit in the header of a ZIP tells of a secret, or of a patch
+        hsi.Traffic([STRAIGHT]).save(path)
+        damaged = bytearray(path.read_bytes())
+        damaged[damaged.rindex(b"PK\x01\x02") + 8] ^= flag
+        damaged[damaged.index(b"PK\x01\x02") + 8] ^= flag
+        path.write_bytes(damaged)
+        with pytest.raises(ValueError, match=ours):
+            hsi.Traffic.load(path)
     with pytest.raises(ValueError, match="must be of format 1, got 2; read it with the version of hsictrl that wrote"):
         hsi.Traffic.load(with_head(path, format=2))
     with pytest.raises(ValueError, match=r"must hold what Traffic\.save has written, got damage: 'speed'"):
@@ -108,6 +122,8 @@ class Hop(hsi.WalkingForce):
 
 @pytest.mark.parametrize(("call", "message"), [
     (lambda: hsi.Traffic([STRAIGHT]).save("/no/such/folder/a.npz"), "must be one that can be written, got No such"),
+    (lambda: hsi.Traffic([STRAIGHT]).save(""), "the file must have a name, got none; choose one"),
+    (lambda: hsi.Traffic([STRAIGHT]).save("a" * 300), "must be one that can be written, got File name too long"),
     (lambda: hsi.Traffic([STRAIGHT]).save(3), "path must be of type str or Path, got int"),
     (lambda: hsi.Traffic.load(3), "path must be of type str or Path, got int"),
     (lambda: hsi.Traffic.load(ROOT), "the traffic must be a file that can be read, got Is a directory"),

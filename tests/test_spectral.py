@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import control as ct
@@ -14,6 +15,7 @@ from scipy.signal import lfilter
 from scipy.stats import truncnorm
 
 from hsictrl import (
+    Absorber,
     CrowdFlow,
     Footbridge,
     HarmonicForce,
@@ -316,6 +318,10 @@ LATERAL = Footbridge(modes=[SWAY], length=LENGTH, width=3.0, mass=50e3)
     ({"percentile": 100.0}, ValueError, r"percentile must lie in \(0, 100\), got 100; give 95"),
     ({"bridge": reference_bridge(damping=0.0)}, ValueError, r"damping\[0\] must lie in \(0, 1\), got 0; nothing"),
     ({"bridge": reference_bridge(damping=1e-7)}, ValueError, "damping must settle a vibration within a spectrum of"),
+    ({"bridge": BRIDGE.with_absorbers(Absorber(mass=250.0, frequency=2.0, damping=0.0), at=[25.0])}, ValueError,
+     r"damping of absorbers and people\[0\] must lie in \(0, 1\), got 0; nothing settles without"),
+    ({"model": "PMC", "flow": CrowdFlow(density=0.5, population=replace(Population.walking(), damping=(0.0, 0.0)))},
+     ValueError, r"damping of absorbers and people\[0\] must lie in \(0, 1\), got 0; nothing settles without"),
     ({"bridge": LATERAL}, ValueError, "the first mode must move vertically"),
     ({"flow": CrowdFlow(density=0.001)}, ValueError, "density must put at least one person on the deck of 150 m²"),
 ])

@@ -255,6 +255,15 @@ def test_a_crowd_that_stands_longer_than_a_table_lasts_is_coupled_all_along() ->
     assert apart(ours.y[0], theirs.outputs) < 1e-6
 
 
+def test_whoever_appears_where_two_steps_meet_is_not_lost_between_them() -> None:
+    """In the middle of the deck, at 3 s: steps from −3 s on end a rounding error before and begin one after."""
+    there = walker(force=SILENT, trajectory=hsi.Trajectory([3.0, 25.0], [24.0, 24.0]))
+    crowd = hsi.moving_crowd(BRIDGE, hsi.Traffic([walker(speed=1.6, arrival=-3.0), there]))
+    times = np.linspace(-3.0, 10.0, 1301)
+    coarse, fine = (hsi.simulate(crowd, times, step=step) for step in (0.01, 0.000625))
+    assert apart(coarse.response.y, fine.response.y) < 2 * coarse.error < 1e-5
+
+
 def test_traffic_answers_for_those_who_follow_trajectories() -> None:
     out = hsi.Trajectory([0.0, 20.0, 30.0, 50.0], [0.0, 25.0, 25.0, 0.0], y=0.5)
     late = walker(speed=1.25, arrival=5.0)
@@ -454,6 +463,7 @@ def test_files_of_jupedsim_that_are_refused(statements: list[str], message: str,
     ("", "a.dat: the frame rate must be known"),
     (HEAD, "a.dat: the table must hold somebody, got no rows; give the SQLite file of JuPedSim, or text"),
     ("# id frame x/m y/m\n1 0 1 1", "the frame rate must be known, got none; give frame_rate, or add a line '# framer"),
+    ("# framerate: 12,5\n# in m\n1 0 1 1", "the frame rate must be a number above 0, got '12,5'"),
     ("# framerate: fast\n# in m\n1 0 1 1", "the frame rate must be a number above 0, got 'fast'"),
     ("# framerate: 10\n1 0 1 1", "the unit of x and y must be told once, as m or cm, got none; add a line '# id frame"),
     ("# framerate: 10\n# x/mm y/mm\n1 0 1 1", "the unit of x and y must be told once, as m or cm, got none"),
@@ -492,6 +502,9 @@ LEAVING = hsi.Traffic([walker(trajectory=hsi.Trajectory([0.0, 60.0], [0.0, 60.0]
     (lambda: read({"time": [1], "x": [1.0], "y": [0.0]}), "table: the table must have a column 'id'"),
     (lambda: read(column(x=[0.0])), "the columns must have the same length, got {'id': 5, 'time': 5, 'x': 1, 'y': 5}"),
     (lambda: read(column(id=["anna"] * 5)), "table, row 0, column id: the cell must be a number, got 'anna'"),
+    (lambda: read(column(time=np.array(TABLE["time"]).astype("timedelta64[ns]"))),
+     r"table, column time: the cells must be plain numbers, got timedelta64\[ns\]; give seconds"),
+    (lambda: read(column(time=np.array(TABLE["time"]).astype("datetime64[s]"))), "column time: .* got datetime64"),
     (lambda: read(TABLE, frame_rate=10.0), "frame_rate must be left out where the table has a column 'time'"),
     (lambda: read(ROOT / "examples" / "filmed.txt", frame_rate=25.0), "filmed.txt, 1 Hz, got 25 Hz; leave it out"),
     (lambda: read(TABLE, frame_rate=0.0), "frame_rate must be above 0"),
@@ -504,6 +517,7 @@ LEAVING = hsi.Traffic([walker(trajectory=hsi.Trajectory([0.0, 60.0], [0.0, 60.0]
     (lambda: read(TABLE, step_frequency="pace"), "step_frequency must name a column, one of .*, got 'pace'"),
     (lambda: read(column(pace=[2.0, 2.0, 1.9, 2.0, 2.0]), step_frequency="pace"),
      "table, row 2, column pace: a person must keep one step frequency, got 1.9 after 2.0; give the mean"),
+    (lambda: read(TABLE, weight=[700.0, 800.0]), r"weight must be one number, got an array of shape \(2,\); give N"),
     (lambda: read(TABLE, rng=1), "rng must be of type Generator, got int"),
     (lambda: read(TABLE, bridge="bridge"), "bridge must be of type Footbridge, got str"),
     (lambda: read(TABLE, force="jump"), "force must be of type WalkingForce, got str"),
@@ -513,6 +527,7 @@ LEAVING = hsi.Traffic([walker(trajectory=hsi.Trajectory([0.0, 60.0], [0.0, 60.0]
     (lambda: hsi.Trajectory([0.0, 1.0], [1.0]), "times, x and y must have the same length, got 2, 1 and 2"),
     (lambda: hsi.Trajectory([0.0, 1.0], [1.0, np.nan]), r"x\[1\] must be finite, got nan"),
     (lambda: hsi.Trajectory([0.0, 1.0], [0.0, 11.0]), "a trajectory must go at most 10 m/s, got 11 m/s from 0 to 1 s"),
+    (lambda: hsi.Trajectory([0.0, 9.0], [1.0, 2.0]).stays_on("bridge"), "bridge must be of type Footbridge, got str"),
     (lambda: walker(), "speed must be real numbers, got None; give m/s, at most 10"),
     (lambda: walker(speed=1.2, trajectory=wandering(0, 0.0, 9.0)), "speed must be left to the trajectory, got 1.2"),
     (lambda: walker(arrival=3.0, trajectory=wandering(0, 0.0, 9.0)), "arrival must be left to the trajectory, got 3.0"),
@@ -522,6 +537,7 @@ LEAVING = hsi.Traffic([walker(trajectory=hsi.Trajectory([0.0, 60.0], [0.0, 60.0]
     (lambda: LEAVING.persons_on(BRIDGE, [1.0]), "a trajectory must lie on the deck"),
     (lambda: hsi.moving_crowd(BRIDGE, hsi.Traffic([FOLLOWING]), convective=True),
      "convective terms need walkers who go straight on, got some who follow a trajectory; leave"),
+    (lambda: replace(hsi.Traffic([FOLLOWING]).walkers, trajectories=None), "trajectories must be of type Sequence"),
     (lambda: replace(hsi.Traffic([FOLLOWING]).walkers, trajectories=["a"]), "trajectories must be of type Trajectory"),
     (lambda: replace(hsi.Traffic([FOLLOWING]).walkers, trajectories=[None, 1]), "must have the same length"),
 ])

@@ -68,7 +68,9 @@ def _uniform(low: float, high: float, rule: Nodes) -> Nodes:
 def _normal(normal: Any, rule: Nodes, high: float = np.inf) -> Nodes:
     """Nodes and weights of a normal; those beyond (0, high), to which it is truncated, are left out."""
     mean, spread = normal
-    values, weights = (mean + spread * rule[0], rule[1]) if spread else (np.array([mean]), np.ones(1))
+    if not spread:
+        return np.array([mean]), np.ones(1)
+    values, weights = mean + spread * rule[0], rule[1]
     inside = (values > 0) & (values < high)
     return values[inside], weights[inside] / np.sum(weights[inside])
 

@@ -19,7 +19,7 @@ from hsictrl._checks import Array
 SQLITE = b"SQLite format 3\0"
 JUPEDSIM = {"id": "id", "frame": "frame", "x": "pos_x", "y": "pos_y"}
 TEXT = ("id", "frame", "x", "y")
-RATE = re.compile(r"framerate\s*[:=]?\s*([-+.\w]+)", re.IGNORECASE)
+RATE = re.compile(r"framerate\s*[:=]?\s*([-+.\w]+(?:[,/]\w+)?)", re.IGNORECASE)
 UNIT = re.compile(r"(?:\bx/|\bin )(cm\b|centimet|m\b|met)", re.IGNORECASE)      # as PedPy reads it
 NEITHER = "give the SQLite file of JuPedSim, or text with columns id, frame, x and y"
 
@@ -151,7 +151,12 @@ def _in_memory(table: Any, frame_rate: float | None) -> Recording:
                          "add it, or rename the one that holds it")
     if "time" in heads and frame_rate is not None:
         raise ValueError("frame_rate must be left out where the table has a column 'time', got both; leave one out")
-    columns = {head: np.asarray(table[head]).ravel().tolist() for head in heads}
+    arrays = {head: np.asarray(table[head]).ravel() for head in heads}
+    for head, array in arrays.items():
+        if array.dtype.kind in "mM":    # which would be read as nanoseconds, or not at all
+            raise ValueError(f"table, column {head}: the cells must be plain numbers, got {array.dtype}; give seconds, "
+                             "such as (times - times[0]) / numpy.timedelta64(1, 's')")
+    columns = {head: array.tolist() for head, array in arrays.items()}
     sizes = {head: len(column) for head, column in columns.items()}
     if len(set(sizes.values())) > 1:
         raise ValueError(f"table: the columns must have the same length, got {sizes}; give a cell in each row")

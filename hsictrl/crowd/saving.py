@@ -71,7 +71,7 @@ def load(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise ValueError(f"{path}: the traffic must be a file that can be read, got {error.strerror or error}; correct "
                          "the path") from None
-    except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, EOFError, RuntimeError, zipfile.BadZipFile) as error:
         raise ValueError(f"{path}: the file must be one that Traffic.save has written, got another: {error}; correct "
                          "the path") from None
     if form != FORMAT:
@@ -135,7 +135,9 @@ def _trajectories(arrays: Arrays) -> list[Trajectory | None]:
 
 def _write(path: Path, arrays: Arrays) -> None:
     """Into a file beside it, which then takes its place."""
-    beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+    if not path.name:
+        raise ValueError(f"{path}: the file must have a name, got none; choose one")
+    beside = path.with_name(f".{secrets.token_hex(8)}")    # short: a name may be as long as it can be
     try:
         with beside.open("xb") as file:
             np.savez(file, **arrays)  # type: ignore[arg-type]

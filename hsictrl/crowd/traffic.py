@@ -74,7 +74,7 @@ class Traffic:
             standing=None if self.standing is None else _standing(self.standing),
             spread=check.number("spread", self.spread, least=0, remedy="give Hz, 0 for none"))
         if self.drawn_from is not None:
-            check.number("drawn_from", self.drawn_from, remedy="give s")
+            check.store(self, drawn_from=check.number("drawn_from", self.drawn_from, remedy="give s"))
 
     @classmethod
     def from_trajectories(
@@ -144,6 +144,7 @@ class Traffic:
         check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
         still = check.number("still", still, least=0, remedy="give m/s, 0 if everybody steps")
+        weight = check.number("weight", weight, above=0, remedy="give N")
         force = ZivanovicForce() if force is None else force
         check.instance("force", force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
         crowds = population or Population.walking(), standing_population or Population.standing()

@@ -140,6 +140,7 @@ class Trajectory:
         >>> stay.times, stay.x
         (array([20., 60.]), array([ 0., 50.]))
         """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
         edges = [(0, 0.0), (0, bridge.length), (1, -bridge.width / 2), (1, bridge.width / 2)]
         ends = np.unique(np.concatenate([self.times[[0, -1]], *(self._crossings(*edge) for edge in edges)]))
         on = np.concatenate([[False], bridge.carries(self._places((ends[:-1] + ends[1:]) / 2)), [False]])

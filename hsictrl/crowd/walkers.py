@@ -61,6 +61,7 @@ class Walkers:
     trajectories: Sequence[Trajectory | None] = ()
 
     def __post_init__(self) -> None:
+        check.instance("trajectories", self.trajectories, Sequence, "give a list, empty where all go straight on")
         followed = any(one is not None for one in self.trajectories)
         check.store(self, trajectories=tuple(self.trajectories) if followed else ())
         for name in ("weight", "step_frequency", "speed"):

@@ -136,8 +136,8 @@ def spectral_estimate(
     Raises
     ------
     ValueError
-        If the bridge has no damping, or hardly any; if its first mode does not move vertically; if nobody is on the
-        deck; or if the phases of the force are not random.
+        If the bridge, an absorber or a body has no damping, or hardly any; if the bridge's first mode does not move
+        vertically; if nobody is on the deck; or if the phases of the force are not random.
 
     Notes
     -----
@@ -190,6 +190,8 @@ def _acceleration(
 ) -> tuple[Array, Band]:
     """Spectral density of the acceleration [m²/s⁴/Hz]."""
     bridge, speed = system.bridge, flow.speed_on(system.bridge)
+    check.numbers("damping of absorbers and people", system.people.damping, above=0, below=1,
+                  remedy="nothing settles without; give such as 0.05")
     crossing = bridge.length / speed
     lines, power = mean_square_lines(force, flow.weight, steps, crossing)
     band = _settled(Band.over(float(lines.max()), crossing, _slowest_decay(system)))

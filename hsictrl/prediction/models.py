@@ -276,6 +276,7 @@ def _carrier(model: str, bridge: Footbridge, traffic: Traffic) -> tuple[Footbrid
     if model in ("SF", "MF"):
         return bridge, (), ()
     people, places = traffic.standing_on(bridge)
+    bridge.on_deck("standing", places)
     return (bridge.with_crowd_mass(float(people.mass.sum())), (), ()) if model == "MFAM" else (bridge, people, places)
 
 

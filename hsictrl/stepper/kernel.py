@@ -28,6 +28,7 @@ from hsictrl._checks import Array
 from hsictrl._compiled import BORROWING, COMPILED, ONE, THREE, TWO
 from hsictrl.walking.lines import spline
 
+ROUNDING = 1e-6     # of a step, within which two times are one
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
 # values at 0, ½ and 1 of the quadratic q with given moments ∫ q τⁱ dτ over (0, 1), i = 0, 1, 2
 FROM_MOMENTS = np.linalg.inv([[1 / 6, 2 / 3, 1 / 6], [0, 1 / 3, 1 / 6], [-1 / 60, 1 / 5, 3 / 20]])
@@ -138,8 +139,12 @@ def _events(paths):  # type: ignore[no-untyped-def]
 
 @njit(**BORROWING)
 def _within(events, t, h):  # type: ignore[no-untyped-def]
-    """Events between t and t + h, both ends included: who comes at the end of a step is not there during the step."""
-    return range(np.searchsorted(events.times, t), np.searchsorted(events.times, t + h, side="right"))
+    """Events between t and t + h, both ends included: who comes at the end of a step is not there during the step.
+
+    One step ends where the next begins but for rounding, in which nobody must get lost.
+    """
+    first, last = t - ROUNDING * h, t + (1 + ROUNDING) * h
+    return range(np.searchsorted(events.times, first), np.searchsorted(events.times, last, side="right"))
 
 
 @njit(**BORROWING)
@@ -257,7 +262,7 @@ def _go(t, h, first, stride, bridge, contacts, events, drive, now, field, kept, 
 def _smooth(t, h, k, length, contacts, rows):  # type: ignore[no-untyped-def]
     """Nodal values of slot k that keep the moments of its shapes over a step in which it steps on or off."""
     arrival, departure, speed = contacts.paths[0, k], contacts.paths[1, k], contacts.paths[2, k]
-    start, half = max(t, arrival), (min(t + h, departure) - max(t, arrival)) / 2
+    start, half = max(t, arrival), max(0.0, min(t + h, departure) - max(t, arrival)) / 2
     for order in range(rows.shape[1]):
         for j in range(rows.shape[2]):
             zeroth = first = second = 0.0
