@@ -355,3 +355,13 @@ def test_a_sweep_takes_them_bridge_by_bridge(tmp_path):
                 for one in study.bridges(2.0)]
     assert all(len(one.absorbers) == 2 for one in study.bridges(2.0))
     np.testing.assert_allclose(trial(np.random.default_rng(3)), [one.peak_acceleration for one in expected], rtol=1e-9)
+
+
+def test_of_two_equal_peaks_the_lower_frequency_is_taken():
+    bridge = hsi.reference_bridge(frequency=2.0, damping=0.005)
+    tuned = hsi.Absorber.tuned(bridge, mass_ratio=0.01)
+    for detuned in (1 - 1e-6, 1.0, 1 + 1e-6):
+        found = hsi.effective(hsi.couple(bridge, replace(tuned, frequency=detuned * tuned.frequency), [25.0]))
+        [(frequency, height)] = found.competing
+        assert found.frequency < 2.0 < frequency
+        assert height == pytest.approx(found.peak, rel=1e-4)
