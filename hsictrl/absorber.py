@@ -187,7 +187,8 @@ class Absorber(Body):
             if logarithms[1] >= 0:      # a damping ratio of one
                 return np.inf
             fixed = bridge.with_absorbers(of(logarithms), at=[spot.place])
-            return float(np.log(effective(couple(fixed, people, positions), mode=mode).peak))
+            found = effective(couple(fixed, people, positions), mode=mode)
+            return float(np.log(max([found.peak, *(height for _, height in found.competing)])))
 
         return of(_lowest(peak, np.log([start.frequency, start.damping])))
 

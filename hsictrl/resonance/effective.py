@@ -16,7 +16,7 @@ from hsictrl.resonance.poles import dominant_pole
 from hsictrl.resonance.response import occupied
 
 METHODS = ("peak", "pole", "halfpower")
-EQUAL = 1e-4            # peaks that differ by less are one as high as the other: rounding is not to choose
+EQUAL = 1e-3            # peaks that differ by less are one as high as the other: rounding is not to choose
 MIXED = 0.5             # the peak is lower by 1/(1 + mixing²), so that ξ_eff is a quarter too high
 UNBOUNDED = 1e12        # below a damping ratio of 1e-12 rounding decides how high a peak is
 
@@ -95,7 +95,7 @@ def effective(
     only for a lightly damped mode on its own:
 
     * "peak": frequency of the largest ``|H|``, and ``ξ_eff = 1/(2 m_B max|H|)`` with the modal mass of the
-      *empty* bridge (eq. 17); the paper's definition. Of peaks that are equal within 0.01 %, as an absorber
+      *empty* bridge (eq. 17); the paper's definition. Of peaks that are equal within 0.1 %, as an absorber
       makes them, it is the lowest frequency.
     * "pole": modulus and damping of the pole that contributes the most to the response.
     * "halfpower": the peak's frequency, and the width of the band above 1/√2 of the peak over twice
