@@ -123,6 +123,21 @@ def test_bands_are_those_of_a_fine_grid(n_modes, mode):
     assert bands.largest_at == pytest.approx(hertz[np.argmax(size)], abs=1e-3)
 
 
+def test_of_two_sharp_peaks_the_higher_one_is_the_largest():
+    """Poles of bridge and absorber: |S| within a thousandth of each, which is some half widths, by its poles and zeros."""
+    bridge = beam(damping=0.001).with_absorbers(hsi.Absorber(mass=500.0, frequency=1.9, damping=0.0), at=[25.0])
+    occupied = hsi.couple(bridge)
+    poles = occupied.poles()[occupied.poles().imag > 0]
+    hertz = np.multiply.outer(poles.imag / (2 * np.pi), np.linspace(0.999, 1.001, 4001)).ravel()
+    pole = (1j * 2 * np.pi * hertz[:, None]) - np.r_[poles, poles.conj()]
+    omega, s = bridge.omega[0], 2j * np.pi * hertz
+    empty = s**2 + 2 * 0.001 * omega * s + omega**2
+    size = np.abs(empty * (s**2 + (2 * np.pi * 1.9)**2) / np.prod(pole, axis=1))
+    bands = hsi.amplified_bands(occupied)
+    assert bands.largest == pytest.approx(size.max(), rel=1e-6)
+    assert bands.largest_at == pytest.approx(hertz[np.argmax(size)], abs=1e-6)
+
+
 def test_nobody_changes_nothing():
     bands = hsi.amplified_bands(hsi.couple(beam()))
     assert (len(bands.amplified), len(bands.reduced), bands.largest) == (0, 0, 1.0)
