@@ -124,7 +124,7 @@ def test_bands_are_those_of_a_fine_grid(n_modes, mode):
 
 
 def test_of_two_sharp_peaks_the_higher_one_is_the_largest():
-    """Poles of bridge and absorber: |S| within a thousandth of each, which is some half widths, by its poles and zeros."""
+    """Poles of bridge and absorber: |S| within a thousandth of each, by poles and zeros."""
     bridge = beam(damping=0.001).with_absorbers(hsi.Absorber(mass=500.0, frequency=1.9, damping=0.0), at=[25.0])
     occupied = hsi.couple(bridge)
     poles = occupied.poles()[occupied.poles().imag > 0]
@@ -224,6 +224,12 @@ def test_copies_keep_names_and_frequency_responses(make):
         assert type(twin) is type(system)
         assert (twin.name, twin.input_labels) == (system.name, ["a", "b"])
         assert np.array_equal(twin(S), system(S))
+
+
+@pytest.mark.parametrize("make", [hsi.loop_gain, hsi.sensitivity])
+def test_a_table_of_frequencies_is_refused(make):
+    with pytest.raises(ValueError, match=r"x must be one number or one row, got shape \(2, 3\); ravel it"):
+        make(crowded(3)).horner(np.ones((2, 3)))
 
 
 @pytest.mark.parametrize("make", [hsi.loop_gain, hsi.sensitivity])

@@ -69,6 +69,7 @@ def amplified_bands(
 
     The sign of ``|S_jj|`` − 1 is read on a grid, and its zeros are refined. Every crowd does both: over periods
     the two areas are equal, ∫ ln|S| dω/ω² = 0, since at low frequencies a crowd is nothing but mass.
+    Absorbers of the bridge count as bodies of the crowd.
 
     Parameters
     ----------
