@@ -238,3 +238,22 @@ def test_only_occupied_bridges_have_a_loop(make):
         make(beam())
     with pytest.raises(TypeError, match="name must be of type str"):
         make(crowded(2), name=3)
+
+
+@pytest.mark.parametrize(("ask", "remedy"), [
+    (lambda bridge: hsi.root_locus(bridge, hsi.Pedestrian(), [20.0]), "give them as the first bodies"),
+    (lambda bridge: hsi.pole_scatter(bridge, hsi.CrowdFlow(persons=3), rng=np.random.default_rng(1)),
+     r"take poles from couple\(bridge, \*flow.crowd\(bridge, rng\)\)"),
+    (hsi.passivity, "certify them as bodies")])
+def test_absorbers_are_refused_where_modes_are_all_that_is_seen(ask, remedy):
+    bridge = beam().with_absorbers(hsi.Absorber(mass=500.0, frequency=1.96, damping=0.09), at=[25.0])
+    with pytest.raises(ValueError, match=rf"bridge must have no absorbers, got 1; {remedy}"):
+        ask(bridge)
+
+
+def test_a_locus_with_an_absorber_as_its_first_body_ends_at_the_poles_of_a_bridge_that_has_it():
+    absorber, people = hsi.Absorber(mass=500.0, frequency=1.96, damping=0.09), hsi.Population.walking()
+    crowd, places = people.sample(5, np.random.default_rng(2)), np.linspace(5.0, 45.0, 5)
+    locus = hsi.root_locus(beam(), hsi.Crowd.of([absorber]) + crowd, [25.0, *places])
+    occupied = hsi.couple(beam().with_absorbers(absorber, at=[25.0]), crowd, places)
+    assert distance(locus.poles[-1], occupied.poles()) < 1e-9
