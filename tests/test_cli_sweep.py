@@ -258,6 +258,18 @@ def test_models_for_which_bridges_share_nothing_have_the_digits_of_trials_of_one
         for model in ("MF", "MFAM", "MC") for damping in (0.01, 0.02)]
 
 
+def test_further_modes_change_as_the_first_does_and_respond(tmp_path: Path) -> None:
+    found = read(tmp_path, "[bridge]\nkind = 'simply_supported'\nlength = 50.0\nwidth = 3.0\nmass = 5e4\n"
+                           "frequency = 2.0\ndamping = [0.005, 0.01]\nn_modes = 2\n[traffic]\npersons = 8\n[sweep]\n"
+                           "model = 'PMC'\nfrequency = [1.0, 1.5]\nmodal_mass = 50e3\ndamping = 0.01")
+    peak = found.trial(density=8 / 150, frequency=1.0, force="zivanovic")(trial_rng(1, 0))
+    bridge = hsi.Footbridge.simply_supported(length=50.0, width=3.0, mass=1e5, frequency=1.0, damping=[0.01, 0.02],
+                                             n_modes=2)
+    traffic = CrowdFlow(persons=8).sample(bridge, rng=trial_rng(1, 0))
+    alone = hsi.predict("PMC", bridge, hsi.tune("PMC", bridge, traffic)).peak_acceleration
+    assert peak.tolist() == pytest.approx([alone], rel=1e-9)
+
+
 @pytest.mark.parametrize(("text", "says"), [
     ("seed = 1", "study.toml: the table must hold 'sweep', got no 'sweep'; add it"),
     ("sweep = 3", "study.toml, line 1, sweep: sweep must be a table, got 3; write it like [name]"),
@@ -281,9 +293,9 @@ def test_models_for_which_bridges_share_nothing_have_the_digits_of_trials_of_one
      "got 'narrow-band'; choose one of these"),
     ("[sweep]\nforce = 'harmonic'", "line 2, [sweep] force: force 'harmonic' must have its factors, got none; describe "
      "it in [force]"),
-    ("[bridge]\nkind = 'simply_supported'\nlength = 50.0\nwidth = 3.0\nmass = 5e4\nfrequency = 2.0\ndamping = 0.01\n"
-     "n_modes = 2\n[sweep]", "line 8, [bridge] n_modes: the bridge of a sweep must have one mode, got 2; leave n_modes "
-     "out, or use 'hsictrl assess'"),
+    ("[bridge]\nkind = 'simply_supported'\nlength = 50.0\nwidth = 3.0\nmass = 5e4\nfrequency = 2.0\ndamping = 0\n"
+     "n_modes = 2\n[sweep]", "line 7, [bridge] damping: the first of several modes must have damping above 0, to which "
+     "the others stand in proportion, got 0; give the damping that it has"),
     ("[traffic]\nstep_frequency = 1.9\n[sweep]", "line 2, [traffic] step_frequency: the steps of a sweep must be tuned "
      "to each bridge, got step_frequency=(1.9, 0.0); leave it out, or use 'hsictrl assess'"),
     ("[traffic]\npersons = [15, 15]\n[sweep]", "line 2, [traffic] persons: the flows of a sweep must differ in "

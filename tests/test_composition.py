@@ -7,7 +7,6 @@ import pickle
 
 import control as ct
 import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from scipy import signal
@@ -341,7 +340,6 @@ def test_default_frequencies_hold_the_peak_and_little_else(n: int) -> None:
     expected = peaks(dense(BRIDGE, *crowd(n)), points=2000)[0][1]
     assert 0.9 * expected < size.max() <= expected
     assert plot.axes[1, 0].get_xlabel() == "Frequency [rad/s]"
-    plt.close("all")
 
 
 def test_default_frequencies_with_more_sensors_than_forces() -> None:
@@ -355,7 +353,6 @@ def test_pole_zero_plot_marks_what_the_system_has() -> None:
     assert distance(plot.poles, np.linalg.eigvals(occupied.A)) < 1e-12
     np.testing.assert_array_equal(plot.zeros, occupied.zeros())
     assert ct.pole_zero_plot(occupied).axes[0, 0].get_title() == ""
-    plt.close("all")
 
 
 @pytest.mark.parametrize("n", [0, 15, 225])
@@ -368,7 +365,6 @@ def test_step_response_lasts_until_the_bridge_rests(n: int) -> None:
     assert np.diff(record.time).max() < 2 * np.pi / abs(slowest) / 12
     assert record.outputs[0] == pytest.approx(occupied.D[0, 0])     # a force meets the mass first
     assert (record.plot().axes[0, 0].get_ylabel(), record.output_labels) == ("a[0]", ["a[0]"])
-    plt.close("all")
 
 
 def test_a_measured_bridge_in_the_hosts_plots() -> None:
@@ -384,4 +380,3 @@ def test_a_measured_bridge_in_the_hosts_plots() -> None:
         np.testing.assert_allclose(omega, OMEGA)
         np.testing.assert_allclose(size, expected, rtol=1e-9)
     assert ct.nyquist_plot(occupied).axes.size == 1
-    plt.close("all")

@@ -5,7 +5,6 @@ import pickle
 
 import control as ct
 import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -381,12 +380,10 @@ def test_bode_plot_draws_the_response(siso):
     expected = response(dense(beam(2), *crowd(5)))[0, 0]
     np.testing.assert_allclose(x, omega)
     np.testing.assert_allclose(y, np.abs(expected), rtol=1e-9)
-    plt.close("all")
 
 
 def test_nyquist_plot_draws_the_response(siso):
     assert ct.nyquist_plot(siso, omega).axes.size == 1
-    plt.close("all")
     curve = ct.nyquist_response(siso, omega)
     plain = dense(beam(2), *crowd(5))
     expected = [(plain.D + plain.C @ np.linalg.solve(s * np.eye(14) - plain.A, plain.B))[0, 0] for s in curve.contour]

@@ -12,7 +12,6 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import pytest
 
 ROOT = Path(__file__).parent.parent
@@ -52,7 +51,6 @@ def test_blocks_run_and_print_what_is_shown(page: Path, tmp_path: Path) -> None:
             printed = printed_by(source, page, names)
             same = OutputChecker().check_output(shown, printed, NORMALIZE_WHITESPACE | ELLIPSIS)
             assert not shown or same, f"{source.strip()}\n\nprints\n{printed}\nand the page shows\n{shown}"
-    plt.close("all")
 
 
 @pytest.mark.parametrize(("body", "fault"), [

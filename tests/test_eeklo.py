@@ -10,7 +10,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -298,7 +297,6 @@ def test_figure_5_shows_the_modes_and_everybody() -> None:
     drawn = np.vstack([line.get_xydata() for line in plot.lines[2, 0]])
     assert np.array_equal(drawn, [(row["x_m"], row["y_m"]) for row in report.rows])
     assert [max(line.get_ydata()) for line in plot.lines[0, 0]] == pytest.approx([0.5, 1.0])
-    plt.close("all")
 
 
 def test_figure_7_is_drawn_from_its_rows(rows: Rows) -> None:
@@ -308,7 +306,6 @@ def test_figure_7_is_drawn_from_its_rows(rows: Rows) -> None:
     assert bent.get_ydata()[-1] == pytest.approx(100 * fig7.chosen(rows, "vertical", "bent legs")[-1]["xi_eff_mean"])
     labels = [line.get_label() for line in plot.lines[0, 1]]
     assert labels == ["upright", "bent legs", "upright, lateral bodies too", "bent legs, lateral bodies too"]
-    plt.close("all")
 
 
 def test_plots_refuse_what_they_cannot_draw() -> None:

@@ -4,7 +4,6 @@ import re
 import runpy
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import pytest
 from typer.testing import CliRunner
 
@@ -20,7 +19,6 @@ EXERCISES = sorted((FOLDER / "exercises").glob("*.py"))
 def test_example_runs(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     runpy.run_path(str(path), run_name="__main__")
     assert capsys.readouterr().out
-    plt.close("all")
 
 
 @pytest.mark.parametrize("path", EXERCISES, ids=lambda path: path.name)

@@ -11,6 +11,8 @@ from second_road import appendix_a, distance, sines
 
 import hsictrl as hsi
 from hsictrl.loop import locus as module
+from hsictrl.loop import secular
+from hsictrl.loop.branches import all_followed
 
 BODY = hsi.Pedestrian()
 SWEPT = {"mass": np.geomspace(5, 500, 7), "frequency": np.linspace(1, 6, 7), "damping": np.linspace(0, 0.95, 7),
@@ -110,6 +112,41 @@ def test_any_crowd_has_the_poles_of_couple(seed, n, n_modes, mass, damping):
     people = replace(people, mass=mass, damping=damping)
     truth = hsi.couple(beam(n_modes), people, x).poles()
     assert distance(present(hsi.root_locus(beam(n_modes), people, x), n), truth) < 1e-9
+
+
+@pytest.mark.parametrize("n_modes", [1, 3])
+def test_the_iteration_settles_without_the_host(monkeypatch, n_modes):
+    """In three rounds or so per newcomer, also where some of the bodies are alike."""
+    people, x = drawn(40)
+    kinds = np.array([2.0, 3.0, 4.0])[np.arange(40) % 3]
+    monkeypatch.setattr(module, "couple", None)
+    monkeypatch.setattr(secular, "ROUNDS", 8)
+    for crowd in (people, replace(people, frequency=kinds, damping=0.3)):
+        assert np.isfinite(hsi.root_locus(beam(n_modes), crowd, x).poles[-1]).all()
+
+
+def test_a_pole_found_twice_is_noticed(monkeypatch):
+    people, x = drawn(4)
+    rows = beam().participation(x)
+    equation = secular.Secular(beam(), people, rows)
+    poles = hsi.couple(beam(), people, x).poles()
+    assert equation.trace == pytest.approx(poles.sum().real, rel=1e-12)
+    twice = np.append(poles[:-1], poles[0])
+    monkeypatch.setattr(secular, "_zeros", lambda secular, guess: twice)
+    assert secular.secular_poles(equation, poles) is None
+
+
+def test_branches_are_found_again_when_their_order_is_lost():
+    """Four points that pass each other in the plane, dealt out anew each time."""
+    rng, t = np.random.default_rng(0), np.linspace(0, 1, 50)[:, None]
+    branches = np.array([0, 1, 2j, 1 + 2j]) + t * np.array([1 + 0.5j, -1 - 0.5j, 1 - 1j, 0])
+    found = all_followed(rng.permuted(branches, axis=1), branches[0])
+    assert np.array_equal(found, branches)
+
+
+def test_where_two_are_nearest_to_one_the_least_way_is_taken():
+    assert all_followed(np.array([[1.2, 3.0 + 0j]]), np.array([0.0, 1.0 + 0j])).tolist() == [[1.2, 3.0]]
+    assert all_followed(np.array([[3.0, 1.2 + 0j]]), np.array([0.0, 1.0 + 0j])).tolist() == [[1.2, 3.0]]
 
 
 def test_where_the_iteration_does_not_settle_the_host_answers(monkeypatch):

@@ -5,7 +5,6 @@ import pickle
 
 import control as ct
 import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from scipy import signal
@@ -170,7 +169,6 @@ def test_an_occupied_measurement_serves_the_host():
     occupied = hsi.couple(measured(beam(), [25.0]), hsi.Pedestrian(), [25.0])
     assert isinstance(occupied, ct.FrequencyResponseData)
     np.testing.assert_array_equal(ct.bode_plot(occupied).lines[0, 0][0].get_data()[0], fine)
-    plt.close("all")
     np.testing.assert_allclose((2 * occupied).frdata, 2 * occupied.frdata)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +12,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.artist import Artist
@@ -31,12 +29,6 @@ PAPER = Path(claims_fig3.__file__).parent
 @pytest.fixture(scope="module")
 def rows() -> Rows:
     return committed("fig4")
-
-
-@pytest.fixture
-def closed() -> Iterator[None]:
-    yield
-    plt.close("all")
 
 
 # Table 1 as printed, with order and type as printed in Table 2: abbreviation, name, fixed-driver term, interaction,
@@ -90,7 +82,6 @@ def symbols(ax: Axes, gid: str) -> list[Artist]:
     return ax.findobj(lambda artist: artist.get_gid() == gid)
 
 
-@pytest.mark.usefixtures("closed")
 def test_fig1_is_drawn_from_its_rows() -> None:
     report = paper.compute("fig1")
     body, contact, *_ = report.draw().axes.flat
@@ -121,7 +112,6 @@ def test_fig2_forces_that_move_are_elsewhere_than_those_that_stay() -> None:
         assert places[model] == pytest.approx([x + 3.75 for x in standing])
 
 
-@pytest.mark.usefixtures("closed")
 def test_fig2_panels_carry_their_assumptions() -> None:
     plot = paper.compute("fig2").draw()
     titles = [ax.get_title("left") for ax in plot.axes.flat]

@@ -1,6 +1,6 @@
 """Asserted on the data that is drawn, not on images; truth is what went in."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
 
@@ -76,12 +76,6 @@ LOCUS = hsi.root_locus(BRIDGE, hsi.Pedestrian(), np.linspace(5, 45, 10))
 SCATTER = hsi.pole_scatter(BRIDGE, hsi.CrowdFlow(persons=10), trials=50, rng=np.random.default_rng(1))
 MAP = {f"μ = {mu}": {"frequency": np.outer([1.0, 0.9, 1.1], np.ones(301)), "damping": np.full((3, 301), mu)}
        for mu in (0.1, 0.2)}
-
-
-@pytest.fixture(autouse=True)
-def closed() -> Iterator[None]:
-    yield
-    plt.close("all")
 
 
 @pytest.fixture

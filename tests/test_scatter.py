@@ -33,6 +33,16 @@ def test_each_is_the_pole_of_its_crowd_that_dominates_the_response(frequency, n_
         assert -pole.real / abs(pole) == pytest.approx(damping, rel=1e-8)
 
 
+def test_tuned_bodies_take_the_pole_where_the_root_locus_over_their_mass_does():
+    """At 3.5 Hz bridge and bodies exchange poles; crowds 2, 13 and 15 lead astray those who take too long steps."""
+    bridge, flow = beam(3.5), hsi.CrowdFlow(persons=150)
+    poles, streams = found(bridge, 150, trials=16).poles, np.random.default_rng(1).spawn(16)
+    for i in (2, 13, 15):
+        people, places = flow.crowd(bridge, streams[i])
+        locus = hsi.root_locus(bridge, people, places, parameter="mass", values=np.linspace(1e-3, 70, 30))
+        assert abs(locus.poles[-1, 0] - poles[i]) < 1e-9
+
+
 def test_each_mode_has_its_own():
     bridge = beam(n_modes=2)
     poles = found(bridge, 5, trials=3, mode=1).poles

@@ -6,7 +6,7 @@ Nothing here depends on what the studies found: truths are the printed table, cl
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import product
@@ -16,7 +16,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -335,13 +334,6 @@ def test_fig8_intervals_contain_their_estimates() -> None:
         assert row["ratio_low"] <= row["ratio"] <= row["ratio_high"]
 
 
-@pytest.fixture
-def closed() -> Iterator[None]:
-    yield
-    plt.close("all")
-
-
-@pytest.mark.usefixtures("closed")
 def test_fig8_draws_its_rows() -> None:
     report = paper.compute("fig8")
     ax = report.draw().axes[1, 0]

@@ -1,7 +1,8 @@
 """What a sweep studies, read from a TOML file: a description (`hsictrl.cli.description`) with a table of axes.
 
 Every axis may be left out. What is an axis takes the place of what the other tables say; what is none comes from
-them. A number in place of a list is an axis of one value. An example::
+them. A number in place of a list is an axis of one value. Frequency, modal mass and damping are those of the first
+mode; further modes change in proportion. An example::
 
     [bridge]
     kind = "reference"
@@ -47,13 +48,13 @@ class Study:
     Parameters
     ----------
     case : Description
-        The bridge of one mode that the others differ from, the flows of people, and the seed.
+        The bridge that the others differ from, the flows of people, and the seed.
     forces : mapping of str to WalkingForce
         Walking forces by their names.
     model : tuple of str
         Models.
     frequency, modal_mass, damping : tuple of float
-        Those of the bridges [Hz, kg, -].
+        Those of the bridges' first modes; further modes change in proportion [Hz, kg, -].
 
     Examples
     --------
@@ -100,7 +101,7 @@ class Study:
         Returns
         -------
         PeaksTrial or JointTrial
-            The latter if a model, or an absorber, is among them for which bridges share nothing.
+            The latter if there is a model, a further mode or an absorber for which bridges share nothing.
 
         Examples
         --------
@@ -110,7 +111,8 @@ class Study:
         0.5
         """
         bridges, flow, walking = self.bridges(frequency), self.flows[density], self.forces[force]
-        if {*self.model} <= {*SHARED_MODELS} and not self.case.bridge.absorbers:
+        plain = self.case.bridge.n_modes == 1 and not self.case.bridge.absorbers
+        if plain and {*self.model} <= {*SHARED_MODELS}:
             return PeaksTrial(models=self.model, bridges=bridges, flow=flow, force=walking)
         return JointTrial([PeakTrial(model=model, bridge=bridge, flow=flow, force=walking)
                            for model in self.model for bridge in bridges])
@@ -122,9 +124,12 @@ class Study:
 
 
 def changed(bridge: Footbridge, *, frequency: float, modal_mass: float, damping: float) -> Footbridge:
-    """A bridge of one mode with other properties; its mass grows as its modal mass does."""
-    mode = replace(bridge.modes[0], frequency=frequency, modal_mass=modal_mass, damping=damping)
-    return replace(bridge, modes=[mode], mass=bridge.mass * (modal_mass / bridge.modes[0].modal_mass))
+    """A bridge with another first mode; mass grows as its modal mass does, and further modes change as it does."""
+    was = bridge.modes[0]
+    first = replace(was, frequency=frequency, modal_mass=modal_mass, damping=damping)
+    further = [replace(mode, **{name: getattr(mode, name) * getattr(first, name) / getattr(was, name)
+                                for name in ("frequency", "modal_mass", "damping")}) for mode in bridge.modes[1:]]
+    return replace(bridge, modes=[first, *further], mass=bridge.mass * (modal_mass / was.modal_mass))
 
 
 def read_study(path: Path) -> Study:
@@ -164,9 +169,9 @@ def read_study(path: Path) -> Study:
 
 def _check_case(top: Table, case: Description) -> None:
     """Refuse what no trial on many bridges takes."""
-    if case.bridge.n_modes != 1:
-        top.table("bridge").refuse("n_modes", f"the bridge of a sweep must have one mode, got {case.bridge.n_modes}; "
-                                              "leave n_modes out, or use 'hsictrl assess'")
+    if case.bridge.n_modes > 1 and not case.bridge.modes[0].damping:
+        top.table("bridge").refuse("damping", "the first of several modes must have damping above 0, to which the "
+                                              "others stand in proportion, got 0; give the damping that it has")
     densities = [flow.density_on(case.bridge) for flow in case.flows]
     if len(set(densities)) < len(densities):
         told = ", ".join(f"{one:g}" for one in densities)

@@ -67,8 +67,8 @@ def amplified_bands(
 ) -> AmplifiedBands:
     """Bands in which the crowd amplifies the response on a mode's own coordinate, and in which it reduces it.
 
-    The sign of ``|S_jj|`` − 1 is read on a grid, and its zeros are refined. Every crowd does both: over periods
-    the two areas are equal, ∫ ln|S| dω/ω² = 0, since at low frequencies a crowd is nothing but mass.
+    The sign of ``|S_jj| − 1`` is read on a grid, and its zeros are refined. Every crowd does both: over periods
+    the two areas are equal, ``∫ ln|S| dω/ω² = 0``, since at low frequencies a crowd is nothing but mass.
     Absorbers of the bridge count as bodies of the crowd.
 
     Parameters

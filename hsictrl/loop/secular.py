@@ -60,6 +60,12 @@ class Secular:
         poles = np.sum(1 / upper + 1 / lower, axis=1)
         return z**2 * mass + z * self.viscous + self.square, grown, poles
 
+    @property
+    def trace(self) -> float:
+        """Sum of the zeros: the trace of a state matrix with these poles."""
+        viscous = self.viscous + self.rows.T * self.dashpot @ self.rows
+        return float(-self.dashpot.sum() - np.trace(np.linalg.solve(self.mass, viscous)))
+
     def step(self, s: Complex, others: Complex) -> Complex:
         """Newton's step towards a zero of p(s), det D(s) times the bodies' denominators, over all it has elsewhere.
 
@@ -85,7 +91,7 @@ def secular_poles(secular: Secular, guess: Complex) -> Complex | None:
         nearest = np.argmin(np.where(sought, np.abs(poles - own), np.inf))
         poles[nearest], sought[nearest] = own, False
     zeros = _zeros(secular, poles[sought])
-    if zeros is None:
+    if zeros is None or abs(zeros.sum() - secular.trace) > SETTLED * 10 * np.abs(zeros).sum():    # one found twice
         return None
     poles[sought] = zeros
     return poles
@@ -99,7 +105,7 @@ def newcomer(secular: Secular, body: Pedestrian, row: Array) -> Complex:
     pole, conjugate = own_poles(body.omega, body.damping)
     with np.errstate(all="ignore"):
         stiffness = secular.stiffness(np.array([pole]))[0][0]
-    shift = 0j
+    shift = 1e-3 * pole             # among its like, whose pole it must not start from
     if np.all(np.isfinite(stiffness)):
         shift = pole**4 / (pole - conjugate) * body.sprung_mass * (row @ np.linalg.pinv(stiffness) @ row)
     guess = pole + shift * min(1.0, FAR * abs(pole) / max(abs(shift), 1e-300))

@@ -65,7 +65,7 @@ def check_threads() -> None:
 
 def compared(row: Row) -> tuple[str, str]:
     """Seconds of the other road, and how many times ours they are."""
-    return ("-", "-") if row.theirs is None else (told(row.theirs), f"{row.theirs / row.ours:.3g}×")
+    return ("-", "-") if row.theirs is None else (told(row.theirs), f"{float(f'{row.theirs / row.ours:.3g}'):g}×")
 
 
 def publish(name: str, title: str, columns: list[str], cells: list[list[str]], notes: list[str]) -> None:
