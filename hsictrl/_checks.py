@@ -41,6 +41,14 @@ def numbers(
     return array
 
 
+def laplace(x: Any) -> NDArray[np.complex128]:
+    """Return `x` as one row of complex numbers; refuse a table of them."""
+    s = np.atleast_1d(np.asarray(x, dtype=complex))
+    if s.ndim > 1:
+        raise ValueError(f"x must be one number or one row, got shape {s.shape}; ravel it")
+    return s
+
+
 def increasing(name: str, values: Any, *, remedy: str) -> Array:
     """Return `values` as at least two numbers that increase; refuse anything else."""
     array = numbers(name, values, ndim=1, count=2, remedy=remedy)

@@ -11,7 +11,7 @@ from scipy.fft import next_fast_len
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._names import labels
-from hsictrl.coupling import MovingCrowd, OccupiedBridge, couple
+from hsictrl.coupling import MovingCrowd, OccupiedBridge
 from hsictrl.stepper import simulate
 
 DURATION = 600.0        # of a record under ambient forces [s]
@@ -104,7 +104,8 @@ def _sensed(occupied: OccupiedBridge, sense_at: Any) -> OccupiedBridge:
     """The same system, read elsewhere."""
     if sense_at is None:
         return occupied
-    return couple(occupied.bridge, occupied.people, occupied.positions, force_at=occupied.force_at, sense_at=sense_at)
+    return OccupiedBridge(occupied.bridge, occupied.people, occupied.positions,     # `couple` would fix absorbers twice
+                          force_at=occupied.force_at, sense_at=sense_at)
 
 
 def _times(crowd: MovingCrowd, duration: float | None, rate: float) -> Array:

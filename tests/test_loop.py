@@ -123,6 +123,21 @@ def test_bands_are_those_of_a_fine_grid(n_modes, mode):
     assert bands.largest_at == pytest.approx(hertz[np.argmax(size)], abs=1e-3)
 
 
+def test_of_two_sharp_peaks_the_higher_one_is_the_largest():
+    """Poles of bridge and absorber: |S| within a thousandth of each, by poles and zeros."""
+    bridge = beam(damping=0.001).with_absorbers(hsi.Absorber(mass=500.0, frequency=1.9, damping=0.0), at=[25.0])
+    occupied = hsi.couple(bridge)
+    poles = occupied.poles()[occupied.poles().imag > 0]
+    hertz = np.multiply.outer(poles.imag / (2 * np.pi), np.linspace(0.999, 1.001, 4001)).ravel()
+    pole = (1j * 2 * np.pi * hertz[:, None]) - np.r_[poles, poles.conj()]
+    omega, s = bridge.omega[0], 2j * np.pi * hertz
+    empty = s**2 + 2 * 0.001 * omega * s + omega**2
+    size = np.abs(empty * (s**2 + (2 * np.pi * 1.9)**2) / np.prod(pole, axis=1))
+    bands = hsi.amplified_bands(occupied)
+    assert bands.largest == pytest.approx(size.max(), rel=1e-6)
+    assert bands.largest_at == pytest.approx(hertz[np.argmax(size)], abs=1e-6)
+
+
 def test_nobody_changes_nothing():
     bands = hsi.amplified_bands(hsi.couple(beam()))
     assert (len(bands.amplified), len(bands.reduced), bands.largest) == (0, 0, 1.0)
@@ -212,8 +227,33 @@ def test_copies_keep_names_and_frequency_responses(make):
 
 
 @pytest.mark.parametrize("make", [hsi.loop_gain, hsi.sensitivity])
+def test_a_table_of_frequencies_is_refused(make):
+    with pytest.raises(ValueError, match=r"x must be one number or one row, got shape \(2, 3\); ravel it"):
+        make(crowded(3)).horner(np.ones((2, 3)))
+
+
+@pytest.mark.parametrize("make", [hsi.loop_gain, hsi.sensitivity])
 def test_only_occupied_bridges_have_a_loop(make):
     with pytest.raises(TypeError, match=r"occupied must be of type .* or OccupiedMeasurement, got Footbridge"):
         make(beam())
     with pytest.raises(TypeError, match="name must be of type str"):
         make(crowded(2), name=3)
+
+
+@pytest.mark.parametrize(("ask", "remedy"), [
+    (lambda bridge: hsi.root_locus(bridge, hsi.Pedestrian(), [20.0]), "give them as the first bodies"),
+    (lambda bridge: hsi.pole_scatter(bridge, hsi.CrowdFlow(persons=3), rng=np.random.default_rng(1)),
+     r"take poles from couple\(bridge, \*flow.crowd\(bridge, rng\)\)"),
+    (hsi.passivity, "certify them as bodies")])
+def test_absorbers_are_refused_where_modes_are_all_that_is_seen(ask, remedy):
+    bridge = beam().with_absorbers(hsi.Absorber(mass=500.0, frequency=1.96, damping=0.09), at=[25.0])
+    with pytest.raises(ValueError, match=rf"bridge must have no absorbers, got 1; {remedy}"):
+        ask(bridge)
+
+
+def test_a_locus_with_an_absorber_as_its_first_body_ends_at_the_poles_of_a_bridge_that_has_it():
+    absorber, people = hsi.Absorber(mass=500.0, frequency=1.96, damping=0.09), hsi.Population.walking()
+    crowd, places = people.sample(5, np.random.default_rng(2)), np.linspace(5.0, 45.0, 5)
+    locus = hsi.root_locus(beam(), hsi.Crowd.of([absorber]) + crowd, [25.0, *places])
+    occupied = hsi.couple(beam().with_absorbers(absorber, at=[25.0]), crowd, places)
+    assert distance(locus.poles[-1], occupied.poles()) < 1e-9

@@ -62,6 +62,14 @@ def test_sensors_are_where_they_are_put() -> None:
     assert (len(record.time), record.time[1]) == (30_000, pytest.approx(0.02))
 
 
+def test_absorbers_of_the_bridge_are_there_once_wherever_sensors_are() -> None:
+    damped = hsi.reference_bridge().with_absorbers(hsi.Absorber(mass=500.0, frequency=1.96, damping=0.09), at=[25.0])
+    there, elsewhere = (hsi.couple(damped, hsi.Pedestrian(), [20.0], sense_at=[x]) for x in (25.0, 10.0))
+    expected = hsi.virtual_measurement(there, duration=20.0, rng=rng()).outputs
+    moved = hsi.virtual_measurement(elsewhere, sense_at=[25.0], duration=20.0, rng=rng()).outputs
+    assert moved == pytest.approx(expected, abs=1e-15)
+
+
 def test_the_same_seed_gives_the_same_record() -> None:
     first, again, other = (hsi.virtual_measurement(OCCUPIED, duration=5.0, rng=rng(k)).outputs for k in (1, 1, 2))
     assert np.array_equal(first, again)

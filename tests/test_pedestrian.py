@@ -211,6 +211,8 @@ rng = np.random.default_rng(0)
     (lambda: hsi.Pedestrian(damping=5.0), ValueError, r"damping must lie in \[0, 1\), got 5; give a fraction, not pe"),
     (lambda: hsi.Pedestrian(damping=-0.1), ValueError, r"damping must lie in \[0, 1\), got -0.1; give a fraction"),
     (lambda: hsi.Pedestrian(damping=1.0), ValueError, r"damping must lie in \[0, 1\), got 1; give a fraction"),
+    (lambda: hsi.Population(frequency=3.0, damping=(0.3, 5.0)), ValueError,
+     "spread of damping must be below 1, got 5; give a fraction, not percent"),
     (lambda: hsi.Pedestrian(mass=0), ValueError, "mass must be above 0, got 0; give kg"),
     (lambda: hsi.Pedestrian(mass=np.nan), ValueError, "mass must be above 0, got nan; give kg"),
     (lambda: hsi.Pedestrian(frequency=np.inf), ValueError, "frequency must be finite, got inf; give Hz"),
@@ -257,3 +259,8 @@ def test_crowds_add_up():
     assert list(people + others) == [*people, *others]
     with pytest.raises(TypeError, match="unsupported operand"):
         people + others[0]
+
+
+def test_a_word_of_ports_is_as_good_as_a_list():
+    people = hsi.Crowd(mass=[70.0, 80.0], frequency=3.25, damping=0.3)
+    assert people.ss(ports="yva").input_labels == people.ss().input_labels

@@ -272,6 +272,19 @@ def test_crowds_that_no_mode_feels_do_not_differ():
     assert idle.bound(beam()) < 1e-12
 
 
+def test_absorbers_of_the_bridge_take_part_in_the_bound():
+    """A heavy one of little damping makes a resonance of its own, higher up, where the crowds differ more."""
+    people = hsi.Crowd(mass=70.0, frequency=np.linspace(2.0, 5.0, 40), damping=0.3)
+    bare = beam(0.5, damping=0.05)
+    bridge = bare.with_absorbers(hsi.Absorber(mass=10e3, frequency=3.0, damping=0.05), at=[25.0])
+    small = people.reduced(order=4, bridge=bridge, positions=np.full(40, 25.0))
+    (fixed, there), omega = bridge.fixed, 2 * np.pi * np.linspace(0.2, 9, 5000)
+    masses = (apparent(bare, fixed + crowd, np.vstack([there, places]), omega)
+              for crowd, places in ((people, small.full_positions), small))
+    exact = error_between(bare, *masses, omega)
+    assert 2 * small.bound(bare) < exact <= small.bound(bridge) < 2 * exact
+
+
 # --- refusals and manners --------------------------------------------------------------------------
 
 @pytest.mark.parametrize(("order", "rule"), [

@@ -53,8 +53,8 @@ Why a crowd that walks may be replaced by one that stands, and what is lost.
 # Solution
 # --------
 #
-# **Task 1.** At x a body counts as φ² of itself at the antinode, so that damping follows sin²(πvt/L). Averaged
-# over the crossing it is half of that at midspan.
+# **Task 1.** At x a body counts as φ² of itself at the antinode, so that what it adds to the damping follows
+# sin²(πvt/L). Averaged over the crossing that is half of what it adds at midspan.
 
 # %%
 import control as ct

@@ -208,9 +208,7 @@ class OccupiedBridge(ct.StateSpace):
         >>> couple(reference_bridge(frequency=2.0)).horner(4j * np.pi).shape
         (1, 1, 1)
         """
-        s = np.atleast_1d(np.asarray(x, dtype=complex))
-        if s.ndim > 1:
-            raise ValueError(f"x must be one number or one row, got shape {s.shape}; ravel it")
+        s = check.laplace(x)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             stiffness = self.dynamic_stiffness(s)
             response = self._condensed_response(s, stiffness)

@@ -69,6 +69,7 @@ def amplified_bands(
 
     The sign of ``|S_jj| − 1`` is read on a grid, and its zeros are refined. Every crowd does both: over periods
     the two areas are equal, ``∫ ln|S| dω/ω² = 0``, since at low frequencies a crowd is nothing but mass.
+    Absorbers of the bridge count as bodies of the crowd.
 
     Parameters
     ----------
@@ -113,12 +114,14 @@ def amplified_bands(
     ends = np.array([grid[0], *edges, grid[-1]]) / (2 * np.pi)
     bands = np.column_stack([ends[:-1], ends[1:]])
     within = excess(2 * np.pi * bands.mean(axis=1))
-    top, at = _largest(excess, grid, int(np.argmax(above)))
+    rises = above[1:] > above[:-1]
+    tops = np.flatnonzero(np.append(True, rises) & np.append(~rises, True))
+    top, at = max(_largest(excess, grid, i) for i in tops)      # between grid points another one may be higher
     return AmplifiedBands(amplified=bands[within > 0], reduced=bands[within < 0], largest=top, largest_at=at)
 
 
-def _largest(excess: Any, grid: Array, top: int) -> tuple[float, float]:
-    """Largest sensitivity, and its frequency [Hz]; 1/|S| is smooth where |S| peaks."""
+def _largest(excess: Any, grid: Array, top: Any) -> tuple[float, float]:
+    """Largest sensitivity about a grid point, and its frequency [Hz]; 1/|S| is smooth where |S| peaks."""
     ends = grid[max(top - 1, 0)], grid[min(top + 1, len(grid) - 1)]
     found = minimize_scalar(lambda omega: 1 / (1 + excess(omega)[0]), bounds=ends, method="bounded",
                             options={"xatol": 1e-10 * grid[top]})

@@ -74,7 +74,7 @@ class LoopGain(ct.StateSpace):
         >>> LoopGain(couple(reference_bridge(frequency=2.0))).horner(4j * np.pi).shape
         (1, 1, 1)
         """
-        s = np.atleast_1d(np.asarray(x, dtype=complex))
+        s = check.laplace(x)
         bridge = self.occupied.bridge
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             stiffness = s[:, None]**2 + np.multiply.outer(s, 2 * bridge.damping * bridge.omega) + bridge.omega**2

@@ -13,6 +13,7 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
+from hsictrl.loop.bare import bare
 from hsictrl.loop.branches import all_followed, followed
 from hsictrl.loop.merged import merged_poles, own_poles
 from hsictrl.loop.secular import Secular, newcomer, secular_poles
@@ -120,7 +121,7 @@ def root_locus(
     Raises
     ------
     ValueError
-        If a place lies off the deck, or only one of `parameter` and `values` is given.
+        If a place lies off the deck, the bridge has absorbers, or only one of `parameter` and `values` is given.
 
     Examples
     --------
@@ -130,7 +131,7 @@ def root_locus(
     >>> print(locus.frequency[[0, 225], 0].round(3), locus.damping[[0, 225], 0].round(4))
     [2.    1.684] [0.005  0.0169]
     """
-    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+    bare(bridge, "give them as the first bodies, Crowd.of([absorber]) + people")
     check.instance("people", people, (Crowd, Pedestrian), "give a Crowd or a Pedestrian")
     places = bridge.on_deck("positions", positions)
     if isinstance(people, Crowd) and len(people) != len(places):

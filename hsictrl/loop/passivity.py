@@ -14,6 +14,7 @@ from hsictrl._checks import Array
 from hsictrl._names import labels
 from hsictrl.bridge import Footbridge, Mode
 from hsictrl.coupling import OccupiedBridge
+from hsictrl.loop.bare import bare
 from hsictrl.loop.gain import LoopGain
 from hsictrl.loop.popov import Margin, Matrices, margin, stored
 from hsictrl.loop.sensitivity import Sensitivity
@@ -98,7 +99,7 @@ def passivity(system: Pedestrian | Crowd | Footbridge | ct.StateSpace) -> Passiv
     Raises
     ------
     ValueError
-        If the system has not as many outputs as inputs, or is in discrete time.
+        If the system has not as many outputs as inputs, is in discrete time, or is a bridge with absorbers.
 
     Examples
     --------
@@ -113,7 +114,7 @@ def passivity(system: Pedestrian | Crowd | Footbridge | ct.StateSpace) -> Passiv
     if isinstance(system, Crowd):
         return _of_bodies(system)
     if isinstance(system, Footbridge):
-        return _of_bridge(system)
+        return _of_bridge(bare(system, "certify them as bodies, Crowd.of([absorber])"))
     return _of_system(system)
 
 

@@ -12,6 +12,7 @@ from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl.bridge import Footbridge
 from hsictrl.crowd import CrowdFlow
+from hsictrl.loop.bare import bare
 from hsictrl.loop.determinant import determinant
 from hsictrl.loop.merged import own_poles
 from hsictrl.pedestrian import Crowd
@@ -127,6 +128,11 @@ def pole_scatter(
     -------
     PoleScatter
 
+    Raises
+    ------
+    ValueError
+        If the bridge has absorbers, or no such mode.
+
     Examples
     --------
     >>> from hsictrl.bridge import reference_bridge
@@ -134,7 +140,7 @@ def pole_scatter(
     >>> print(found.mean.real < found.empty.real)           # every crowd damps
     True
     """
-    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+    bare(bridge, "take poles from couple(bridge, *flow.crowd(bridge, rng))")
     check.instance("flow", flow, CrowdFlow, "use CrowdFlow(persons=...) or CrowdFlow(density=...)")
     check.instance("rng", rng, np.random.Generator, "give numpy.random.default_rng(seed)")
     check.whole("trials", trials, least=2, remedy="give the number of crowds to draw")

@@ -68,7 +68,7 @@ class Sensitivity(ct.StateSpace):
         >>> sensitivity(couple(reference_bridge(frequency=2.0))).horner(4j * np.pi).real
         array([[[1.]]])
         """
-        s = np.atleast_1d(np.asarray(x, dtype=complex))
+        s = check.laplace(x)
         gain = self.gain.horner(s, warn_infinite=False)
         known = np.isfinite(gain).all(axis=(0, 1))
         left = np.zeros_like(gain)
@@ -101,7 +101,7 @@ def sensitivity(
     Under modal forces P the occupied bridge moves as the empty one does under S P: its accelerance is G S,
     with G of the empty bridge. The diagonal S_jj is the accelerance on a mode's own coordinate over that of
     the empty bridge; with one mode, S is H_occupied/H_empty between any two points. Below one the crowd
-    helps, above one it amplifies, see `amplified_bands`.
+    helps, above one it amplifies, see `amplified_bands`. Absorbers of the bridge count as bodies of the crowd.
 
     Parameters
     ----------

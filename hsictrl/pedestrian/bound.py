@@ -37,7 +37,7 @@ def largest_difference(omega: Array, damping: Array, full: Standing, small: Stan
 
 
 def _relative(gain: Array, apart: Array, top: Array) -> float:
-    """From bounds on ‖X̃‖ and ‖ΔA‖ on each arc, and the size of X̃ at its end, the bound on the difference."""
+    """From bounds on ‖X̃‖ and ‖ΔA‖ on each arc, and the least size of X̃ at its end, the bound on the difference."""
     loop = gain * apart
     if not np.all(loop < 1):
         return np.inf
@@ -47,13 +47,13 @@ def _relative(gain: Array, apart: Array, top: Array) -> float:
 
 
 def _gain(stiffness: Array, tail: float) -> tuple[Array, Array]:
-    """‖X̃‖ = |1 − z|²/σ_min(F): the most it can be on each arc, and what it is at the end of the arc."""
+    """‖X̃‖ = |1 − z|²/σ_min(F): the most it can be on each arc, and the least at the end of the arc."""
     values, sag = _on_circle(stiffness)
     least = _least_singular(values)
     step = np.linalg.norm(np.diff(values, axis=0), axis=(1, 2))
     lower = (least[1:] + least[:-1] - step) / 2 - sag - tail      # where the two ends' bounds meet
     moving = 4 * np.sin(THETA[1:] / 2) ** 2
-    return moving / np.where(lower > 0, lower, np.nan), moving / least[1:]
+    return moving / np.where(lower > 0, lower, np.nan), moving / (least[1:] + tail)
 
 
 def _stiffness(series: Array, beta: Array, damping: Array) -> Array:

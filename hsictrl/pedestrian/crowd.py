@@ -191,7 +191,7 @@ class Crowd(SprungBody):
             raise ValueError("a block must hold at least one body, got none; leave an empty crowd out of the loop")
         A, B, C, D = zip(*map(block_matrices, self), strict=True)
         return ct.ss(block_diag(*A), block_diag(*(b[:, :columns] for b in B)), block_diag(*C),
-                     block_diag(*(d[:, :columns] for d in D)), inputs=labels(ports, len(self)),
+                     block_diag(*(d[:, :columns] for d in D)), inputs=labels(list(ports), len(self)),
                      outputs=labels(["F"], len(self)), states=labels(["u", "du"], len(self)), name=name)
 
 

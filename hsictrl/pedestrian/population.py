@@ -143,7 +143,8 @@ def _mean_and_spread(name: str, value: Any, below: float | None) -> tuple[float,
     if pair.shape not in ((1,), (2,)):
         raise ValueError(f"{name} must be a value or (mean, standard deviation), got shape {pair.shape}; {remedy}")
     mean = check.number(name, pair[0], above=0 if name != "damping" else None, below=below, remedy=remedy)
-    return mean, float(pair[1]) if len(pair) == 2 else 0.0
+    spread = pair[1] if len(pair) == 2 else 0.0
+    return mean, check.number(f"spread of {name}", spread, below=below, remedy=remedy)
 
 
 POSTURES = {"bent legs": Population.walking(), "upright": Population.standing()}

@@ -27,6 +27,9 @@ class ModalBridge(Protocol):
     @property
     def damping(self) -> Array: ...
 
+    @property
+    def fixed(self) -> tuple[Crowd, Array]: ...
+
     def on_deck(self, name: str, positions: Any) -> Array: ...
 
     def participation(self, positions: Any, direction: Any = ...) -> Array: ...
@@ -91,7 +94,7 @@ class ReducedCrowd:
         Parameters
         ----------
         bridge : Footbridge
-            The bridge, not only the one for which the crowd was reduced.
+            The bridge, not only the one for which the crowd was reduced; its absorbers take part.
 
         Returns
         -------
@@ -109,9 +112,15 @@ class ReducedCrowd:
         True
         """
         check.instance("bridge", bridge, ModalBridge, REMEDY)
-        full, small = ((people, bridge.participation(bridge.on_deck("positions", places), people.direction))
-                       for people, places in ((self.full_people, self.full_positions), (self.people, self.positions)))
+        full, small = (_on_bridge(bridge, *crowd) for crowd in ((self.full_people, self.full_positions), self))
         return largest_difference(bridge.omega, bridge.damping, full, small)
+
+
+def _on_bridge(bridge: ModalBridge, people: Crowd, positions: Array) -> tuple[Crowd, Array]:
+    """All bodies on a bridge, its absorbers first, and their participations."""
+    fixed, there = bridge.fixed
+    everybody, places = fixed + people, np.vstack([there, bridge.on_deck("positions", positions)])
+    return everybody, bridge.participation(places, everybody.direction)
 
 
 def reduced(people: Crowd, order: int, bridge: ModalBridge, positions: Any) -> ReducedCrowd:
