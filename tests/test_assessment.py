@@ -151,6 +151,13 @@ def test_a_resonance_that_only_the_crowd_brings_below_walking_is_remarked():
     assert assess(bridge, by_hand, force=HarmonicForce([0.4]), rule=RULE).remarks == remarks[1:]
 
 
+def test_a_mode_that_the_crowd_takes_out_of_the_range_is_told_by_its_loaded_frequency():
+    """HiVoSS has no load from 2.3 to 2.5 Hz: 10500 kg of people on half-sines take 2.55 Hz, which has one, to 2.318."""
+    found = assess(reference_bridge(frequency=2.55), CrowdFlow(density=1.0), force=HarmonicForce([0.4]), rule=RULE)
+    assert found.guide.acceleration == 0.0
+    assert "2.318 Hz, with the crowd's mass, lies outside the range for which HiVoSS has a load" in found.remarks
+
+
 # the guides
 
 @pytest.mark.parametrize(("density", "damping", "modal_mass"), [

@@ -63,6 +63,13 @@ def test_the_crowd_s_mass_brings_a_mode_into_a_range_or_out_of_it():
         assert case.response.modal_mass == pytest.approx(62.5e3 * 1.126)
 
 
+def test_cases_are_of_a_bridge_and_a_flow():
+    with pytest.raises(TypeError, match="bridge must be of type Footbridge, got str; describe the bridge by its modes"):
+        hsi.guide_cases("bridge", TC3)
+    with pytest.raises(TypeError, match="flow must be of type CrowdFlow, got float; use CrowdFlow"):
+        hsi.guide_cases(half_sine(2.0), 0.5)
+
+
 def test_the_shape_of_two_spans_is_integrated():
     bridge = hsi.Footbridge.beam(spans=[20.0, 30.0], width=3.0, mass=100e3, frequency=1.9, damping=0.01, n_modes=2)
     for j, mode in enumerate(bridge.modes):

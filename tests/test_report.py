@@ -176,6 +176,21 @@ def test_without_goals_there_is_no_column_for_them(found):
     assert plain.all("time")[0]["text"] == datetime.date.today().isoformat()
 
 
+def test_absorbers_are_among_the_inputs_and_in_the_empty_bridge(monkeypatch):
+    """With an absorber the empty bridge has two peaks, neither at 2 Hz nor 1 % high."""
+    damped = BRIDGE.with_absorbers(hsi.Absorber(mass=800.0, frequency=1.95, damping=0.09), at=[15.0])
+    one = hsi.assess(damped, hsi.CrowdFlow(persons=15), force=hsi.YoungForce(), rule=hsi.PercentileRule(tolerance=0.9))
+    drawn, draw = [], plots.modes_plot
+    monkeypatch.setattr(plots, "modes_plot", lambda bridge, places: drawn.append(places) or draw(bridge, places))
+    text = Page(report_page([one], title="t")).text()
+    assert {name: len(places) for name, places in drawn[0].items()} == {"standing crowd of trial 0": 15, "absorbers": 1}
+    alone = hsi.effective(hsi.couple(damped))
+    assert f"empty {alone.frequency:#.4g} {100 * alone.damping:#.3g}" in text
+    for words in ("Absorber at (15, 0) m", "800 kg at 1.950 Hz, 9.0 %, vertical", "its highest peak with the absorbers",
+                  "effective frequency of the bridge with its absorbers for MF", "empty bridge, without its absorbers"):
+        assert words in text, words
+
+
 def test_refusals(found):
     other = replace(found[1], mode=1)
     for given, kind, says in (

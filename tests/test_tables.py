@@ -104,8 +104,8 @@ def test_what_was_inferred_is_told(tmp_path):
     bridge = read(export(tmp_path, n_modes=1))
     assert bridge.remarks == (
         "51 nodes along the deck on 1 line(s); x is counted from 0 m, where they begin",
-        "mode 1: 0.00632456 at its antinode (25, 0) m, taken as mass-normalised (1/√kg); scaled to one: 25000 kg, 50 % "
-        "of the bridge's mass")
+        "modes.csv, mode 1: 0.00632456 at its antinode (25, 0) m, taken as mass-normalised (1/√kg); scaled to one: "
+        "25000 kg, 50 % of the bridge's mass")
     given = read(export(tmp_path, n_modes=1, scales=[2.0], modal_mass=[100e3]))
     assert "mode 1: 2 at its antinode (25, 0) m, with 100000 kg; scaled to one: 25000 kg" in given.remarks[1]
     assert hsi.reference_bridge().remarks == ()

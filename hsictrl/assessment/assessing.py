@@ -182,7 +182,8 @@ def _remarks(
     """On a bridge that is led by the mode in resonance."""
     unsettled = tuple(f"{name}: {one.reason}" for name, one in ensembles.items() if not one.converged)
     drawn = flow.sample(bridge, rng=np.random.default_rng(0))
-    outside = f"{bridge.modes[0].frequency:g} Hz lies outside the range for which HiVoSS has a load"
+    heavier = "" if guide.frequency == bridge.modes[0].frequency else ", with the crowd's mass,"
+    outside = f"{guide.frequency:.4g} Hz{heavier} lies outside the range for which HiVoSS has a load"
     silent = () if guide.reduction else (outside,)
     bare = ("the guide's value is that of the bridge without its absorbers",) if bridge.absorbers else ()
     tuned = () if flow.step_frequency is not None else tune("PMC", bridge, drawn).remarks

@@ -86,6 +86,7 @@ def guide_cases(bridge: Footbridge, flow: CrowdFlow) -> tuple[GuideCase, ...]:
     1 hivoss 0.25 0.272
     1 setra 0.25 0.272
     """
+    check_case(bridge, flow)
     cases = (GuideCase(mode=j, response=guide_value(bridge, flow, guide=guide, mode=j, direction=direction))
              for j in range(bridge.n_modes) for guide, direction in GUIDE_LOADS
              if Extent.of(bridge, j, direction).largest >= LEAST_MOTION)

@@ -186,7 +186,7 @@ class Footbridge(Deck):
         footbridge 50 m × 3 m, 50000 kg
           mode 0: 2.000 Hz, 0.50 %, 25000 kg
         51 nodes along the deck on 1 line(s); x is counted from 0 m, where they begin
-        mode 1: 0.00632456 at its antinode (25, 0) m, taken as mass-normalised (1/√kg); scaled to one:
+        modes.csv, mode 1: 0.00632456 at its antinode (25, 0) m, taken as mass-normalised (1/√kg); scaled to one:
         25000 kg, 50 % of the bridge's mass
         """
         width = check.number("width", width, above=0, remedy="give m")

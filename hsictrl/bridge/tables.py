@@ -214,5 +214,5 @@ def _scaling(table: Cells, index: int, shape: SampledShape, mass: float) -> str:
     as_exported = table.column("modal_mass")[index] if given else 1.0
     how = f"with {as_exported:g} kg" if given else "taken as mass-normalised (1/√kg)"
     modal_mass = as_exported / shape.scale**2
-    return (f"mode {_numbers(table)[index]}: {abs(shape.scale):g} at its antinode ({x:g}, {y:g}) m, {how}; "
-            f"scaled to one: {modal_mass:.0f} kg, {100 * modal_mass / mass:.0f} % of the bridge's mass")
+    return (f"{table.path.name}, mode {_numbers(table)[index]}: {abs(shape.scale):g} at its antinode ({x:g}, {y:g}) m, "
+            f"{how}; scaled to one: {modal_mass:.0f} kg, {100 * modal_mass / mass:.0f} % of the bridge's mass")

@@ -35,6 +35,8 @@ def assumptions(found: Assessment) -> list[str]:
 def _steps(found: Assessment) -> list[str]:
     if found.flow.step_frequency is not None:
         return [f"Step frequencies are set by hand: {found.flow.step_frequency} Hz (mean, standard deviation)."]
+    empty = "effective frequency of the bridge with its absorbers" if found.bridge.absorbers else (
+        "frequency of the empty bridge")
     return ["Steps are tuned to resonance, the design load case: their mean is f/h with the smallest harmonic h for "
-            "which it is at most 2.5 Hz, where f is the frequency of the empty bridge for MF, and the effective one of "
+            f"which it is at most 2.5 Hz, where f is the {empty} for MF, and the effective one of "
             "each trial's crowd for PMC. Below 1 person/m² they scatter by 0.175 Hz; from there on all are equal."]

@@ -27,7 +27,9 @@ def band_frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
 def shapes_picture(found: Assessment) -> Picture:
     """The mode shapes, over the crowd of the first trial."""
     bridge, crowd = found.bridge, cast(OccupiedBridge, found.prediction("PMC").system)
-    plot = plots.modes_plot(bridge, {"standing crowd of trial 0": crowd.positions})
+    n = len(bridge.absorbers)     # which come first among the bodies
+    absorbers = {"absorbers": crowd.positions[:n]} if n else {}
+    plot = plots.modes_plot(bridge, {"standing crowd of trial 0": crowd.positions[n:]} | absorbers)
     size = (WIDER, 1.6 * (bridge.n_modes + 1))
     return _picture(plot, size, f"Shapes of the {bridge.n_modes} mode(s) along the deck, and a plan of the deck with a "
                     "crowd on it", "Mode shapes, and where people stand in trial 0.")

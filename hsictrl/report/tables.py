@@ -17,6 +17,7 @@ from hsictrl.comfort import COMFORT_BOUNDS, COMFORT_CLASSES
 from hsictrl.crowd import TRAFFIC_CLASSES, CrowdFlow
 from hsictrl.report.sections import Cell, Table
 from hsictrl.report.words import bodies, rule, stops
+from hsictrl.resonance import effective
 from hsictrl.study import Ensemble
 
 NUMERICS = ("control", "numpy", "scipy", "numba", "matplotlib", "jinja2")
@@ -37,9 +38,10 @@ def answer_table(found: Sequence[Assessment]) -> Table:
 
 
 def deck_table(one: Assessment) -> Table:
-    """Bridge, force and rule."""
+    """Bridge and what is fixed to it, force and rule."""
     bridge = one.bridge
     rows = [("Deck", f"{bridge.length:g} m × {bridge.width:g} m"), ("Mass of the bridge", f"{bridge.mass:g} kg"),
+            *((f"Absorber at ({x:g}, {y:g}) m", str(body)) for body, (x, y) in bridge.absorbers),
             ("Walking force", str(one.force)), ("Seed", str(one.pmc.seed)), ("Trials", stops(rule(one.pmc)))]
     return Table(caption="Bridge, force and study", head=["Input", "Value"],
                  rows=[[(name,), (value,)] for name, value in rows])
@@ -59,7 +61,8 @@ def modes_table(found: Sequence[Assessment]) -> Table:
     one = found[0]
     critical = {case.mode for each in found for case in each.guides}
     head = ["Mode", "Frequency [Hz]", "Damping ratio [%]", "Modal mass [kg]", "Role"]
-    return Table(caption="Modes of the empty bridge", head=head, rows=[[
+    without = ", without its absorbers" if one.bridge.absorbers else ""
+    return Table(caption=f"Modes of the empty bridge{without}", head=head, rows=[[
         (str(j),), (significant(mode.frequency, 4),), (significant(100 * mode.damping),), (f"{mode.modal_mass:.0f}",),
         (", ".join(filter(None, ["in resonance" * (j == one.mode), "critical by a guide" * (j in critical)])) or "–",)]
         for j, mode in enumerate(one.bridge.modes)])
@@ -67,8 +70,8 @@ def modes_table(found: Sequence[Assessment]) -> Table:
 
 def effective_table(found: Sequence[Assessment]) -> Table:
     """Frequency and damping of the bridge with standing crowds."""
-    mode = found[0].bridge.modes[found[0].mode]
-    empty = [("empty",), (significant(mode.frequency, 4),), (significant(100 * mode.damping),)]
+    alone = effective(found[0].bridge, mode=found[0].mode)     # with its absorbers, if it has some
+    empty = [("empty",), (significant(alone.frequency, 4),), (significant(100 * alone.damping),)]
     return Table(caption=f"Mode {found[0].mode} with a crowd: means over standing crowds",
                  head=["Traffic", "f_eff [Hz]", "ξ_eff [%]"], rows=[empty, *map(_effective, found)])
 

@@ -24,7 +24,8 @@ def answer(found: Sequence[Assessment], largest: Assessment) -> list[str]:
 
 def resonance(found: Assessment) -> str:
     """Which mode was brought into resonance."""
-    steps = "are tuned to it" if found.flow.step_frequency is None else "are set by hand"
+    tuned = "are tuned to its highest peak with the absorbers" if found.bridge.absorbers else "are tuned to it"
+    steps = tuned if found.flow.step_frequency is None else "are set by hand"
     frequency = significant(found.bridge.modes[found.mode].frequency, 4)
     return (f"Mode {found.mode} ({frequency} Hz) is the one in resonance: steps {steps}, and accelerations are read at "
             "its antinode. Modes are counted from 0.")
