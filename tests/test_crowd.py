@@ -1,6 +1,7 @@
 """Traffic against eqs. 9 and 10 and section 2.2 of Van Nimmen et al. (2017), and against scipy.stats."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -321,3 +322,13 @@ def test_what_was_drawn_cannot_be_changed_afterwards():
     for array in (traffic.walkers.model, traffic.walkers.draws[0], traffic.walkers.arrival):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
+
+
+def test_a_bridge_that_hardly_settles_is_refused_before_anything_is_drawn():
+    """Two crossings at least, or one and five time constants: 1/(1e-6 · 4π) s each."""
+    bridge = reference_bridge(frequency=2.0, damping=1e-6)
+    flow = CrowdFlow(persons=15, speed=1.25)
+    persons = 15 * (2 + 5 / (1e-6 * 4 * np.pi) / 40)
+    with pytest.raises(ValueError, match=re.escape(f"got {persons:.3g} in 3.98e+05 s; give every")):
+        flow.sample(bridge, rng=np.random.default_rng(1))
+    assert flow.drawn_from(reference_bridge(damping=0.0)) == -80.0

@@ -159,8 +159,8 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow, *, mode: int = 0) -> N
     Raises
     ------
     ValueError
-        If nobody is on the deck, nothing damps the bridge, the mode does not move vertically, or people are
-        too many to walk.
+        If nobody is on the deck, nothing damps the bridge or so little that it hardly settles, the mode does not move
+        vertically, or people are too many to walk.
 
     Examples
     --------
@@ -174,6 +174,7 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow, *, mode: int = 0) -> N
     check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
     check_vertical(bridge, mode)
     guide_value(bridge, flow, mode=mode)
+    flow.drawn_from(bridge)
 
 
 def _remarks(

@@ -83,17 +83,17 @@ def assess(
         study = partial(assessment.assess, case.bridge, force=case.force, rule=rule, mode=mode, seed=case.seed,
                         executor=executor, ledger=book)
         found = [study(flow, goal=goal) for flow, goal in case.aims]
-    if figure is not None:
-        _draw(figure, found, case)
-    if report is not None:
-        _report(report, found, title="the reference bridge" if file is None else file.name, description=quoted,
-                command=options.as_typed(context, leave_out=ASIDE))
     guides = guide_rows(found)
     Outcome(
         description=case, rows=[one.to_dict() for one in found], table=table(found, rule),
         settings={"percentile": percentile, "tolerance": tolerance, "confidence": rule.confidence, "mode": mode},
         further={"guides": (guide_table(guides), guides)}, notes=notes(case, rule, found),
     ).show(as_json=as_json, as_csv=as_csv)
+    if figure is not None:
+        _draw(figure, found, case)
+    if report is not None:
+        _report(report, found, title="the reference bridge" if file is None else file.name, description=quoted,
+                command=options.as_typed(context, leave_out=ASIDE))
 
 
 def _draw(path: Path, found: list[assessment.Assessment], case: Description) -> None:

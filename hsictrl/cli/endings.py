@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import NoReturn
 
 import typer
@@ -31,6 +32,15 @@ def failing() -> Iterator[None]:
         _stop(error, REFUSED)
     except RuntimeError as error:
         _stop(error, FAILED)
+
+
+@contextmanager
+def unwritable(path: Path) -> Iterator[None]:
+    """Report a file that could not be written after all, with exit code 1."""
+    try:
+        yield
+    except OSError as error:
+        _stop(RuntimeError(f"{path} must be a file that can be written, got {error.strerror}; choose another"), FAILED)
 
 
 def _stop(error: Exception, code: int) -> NoReturn:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import typer
 
+from hsictrl.cli.endings import unwritable
 from hsictrl.study import Ledger
 
 
@@ -65,9 +66,10 @@ def checked_ledger(path: Path | None, resume: bool) -> Ledger | None:
 def whole_file(path: Path) -> Iterator[Path]:
     """Yield a draft beside `path`, which takes its place when it has been written without an error."""
     draft = path.with_name(f".{os.getpid()}-{path.name}")
-    try:
-        yield draft
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)
+    with unwritable(path):
+        try:
+            yield draft
+            draft.replace(path)
+        finally:
+            draft.unlink(missing_ok=True)
     typer.echo(f"wrote {path}", err=True)

@@ -22,6 +22,7 @@ FREE_SPEED, GAMMA, JAM_DENSITY = 1.34, 0.354, 5.4
 SPARSE_BELOW, SPARSE_SPREAD = 1.0, 0.175
 HIGHEST_STEP = 2.5
 TIME_CONSTANTS = 5.0
+MOST_WALKERS = 100_000     # in a sample: 50 crossings of the longest bridges, or a damping of 0.01 % at 1 Hz
 
 
 def weidmann_speed(density: float) -> float:
@@ -272,6 +273,39 @@ class CrowdFlow:
         places = (rng.random((n, 2)) - [0.0, 0.5]) * [bridge.length, bridge.width]
         return self.population.sample(n, rng), places
 
+    def drawn_from(self, bridge: Footbridge) -> float:
+        """Time from which arrivals are drawn, −(T + W), with W = max(T, 5/(ξ_B ω_B)) by the slowest mode.
+
+        Parameters
+        ----------
+        bridge : Footbridge
+            The bridge.
+
+        Returns
+        -------
+        float
+            [s]
+
+        Raises
+        ------
+        ValueError
+            If more than 100 000 people would come until the bridge has settled.
+
+        Examples
+        --------
+        >>> from hsictrl.bridge import reference_bridge
+        >>> round(CrowdFlow(density=0.2).drawn_from(reference_bridge(frequency=2.0, damping=0.005)), 2)
+        -116.89
+        """
+        check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
+        crossing = bridge.length / self.speed_on(bridge)
+        earliest = -(crossing + settling_time(crossing, float(np.min(bridge.damping * bridge.omega))))
+        persons = self.density_on(bridge) * bridge.area * (1 - earliest / crossing)
+        if persons > MOST_WALKERS:
+            raise ValueError(f"at most {MOST_WALKERS} people may come until a bridge has settled, got {persons:.3g} in "
+                             f"{-earliest:.3g} s; give every mode more damping")
+        return earliest
+
     def sample(
         self, bridge: Footbridge, *, rng: np.random.Generator, force: WalkingForce | None = None,
     ) -> Traffic:
@@ -309,8 +343,7 @@ class CrowdFlow:
         force = ZivanovicForce() if force is None else force
         check.instance("force", force, WalkingForce, "use HarmonicForce, YoungForce or ZivanovicForce")
         arrivals, gait, across, forces, bodies, standing = rng.spawn(6)
-        crossing = bridge.length / self.speed_on(bridge)
-        earliest = -(crossing + settling_time(crossing, float(np.min(bridge.damping * bridge.omega))))
+        crossing, earliest = bridge.length / self.speed_on(bridge), self.drawn_from(bridge)
         latest_first = _arrivals(self.density_on(bridge) * bridge.area / crossing, crossing, earliest, arrivals)
         n = len(latest_first)
         mean, spread = self.step_rule_on(bridge, bridge.modes[0].frequency)
