@@ -13,7 +13,7 @@ test: .venv/.tools     ## lint, types, walls, unit tests, doctests, documentatio
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	MPLBACKEND=Agg $(BIN)/python -m pytest
+	MPLBACKEND=Agg $(BIN)/python -m pytest --numprocesses auto --dist loadfile
 	$(BIN)/sphinx-build -q -W --keep-going docs docs/_build/html
 	$(BIN)/python docs/links.py docs/_build/html
 

@@ -252,7 +252,7 @@ PREDICTION = {
     "another bridge": (ValueError, lambda: asked("PMC", Footbridge.simply_supported(
         length=10.0, width=3.0, mass=1e4, frequency=2.0, damping=0.01), FLOW.sample(BRIDGE,
         rng=np.random.default_rng(1))),
-        "positions must lie on the deck", "positions[", "move it"),
+        "standing must lie on the deck", "standing[", "move it"),
 }
 
 
