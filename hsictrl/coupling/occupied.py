@@ -15,6 +15,7 @@ from hsictrl._names import labels
 from hsictrl.bridge import Footbridge, MeasuredBridge
 from hsictrl.coupling.blocks import blocks_of
 from hsictrl.coupling.condensation import CondensedCrowd
+from hsictrl.coupling.frozen import FrozenSystem
 from hsictrl.coupling.interconnection import interconnect
 from hsictrl.coupling.measurement import OccupiedMeasurement
 from hsictrl.pedestrian import Body, Crowd
@@ -88,7 +89,7 @@ def couple(
 
 
 @final
-class OccupiedBridge(ct.StateSpace):
+class OccupiedBridge(FrozenSystem):
     """A bridge with standing people: every `control` function takes it. Made by `couple`.
 
     States are those of (A.7): z[j], u[k], dz[j], du[k]. The frequency response condenses the
@@ -132,12 +133,12 @@ class OccupiedBridge(ct.StateSpace):
         self._drive, self._sense = bridge.participation(self.force_at), bridge.participation(self.sense_at)
         self.condensed = CondensedCrowd(people, bridge.participation(self.positions, people.direction))
         n_m, n = self.condensed.rows.shape[1], len(people)
+        made_of = {"bridge": bridge, "people": people, "positions": self.positions, "force_at": self.force_at,
+                   "sense_at": self.sense_at}
         super().__init__(
-            *self._matrices(), 0, name=name,
+            made_of, self._matrices(), name=name,
             inputs=labels("F", len(self.force_at)), outputs=labels("a", len(self.sense_at)),
             states=labels("z", n_m) + labels("u", n) + labels("dz", n_m) + labels("du", n))
-        for matrix in (self.A, self.B, self.C, self.D):    # `horner` would not follow a change
-            matrix.flags.writeable = False
 
     def _matrices(self) -> tuple[Array, Array, Array, Array]:
         """A_c, B_c, C_c, D_c of (A.8) by their structure: only the modal mass matrix is ever inverted."""
@@ -310,29 +311,10 @@ class OccupiedBridge(ct.StateSpace):
             inplist=self.input_labels, inputs=self.input_labels, outlist=outputs, outputs=self.output_labels,
             check_unused=False, name=self.name)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> OccupiedBridge:
-        return self.__reduce__()[0](*self.__reduce__()[1])
-
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        return _rebuild, (self.bridge, self.people, self.positions, self.force_at, self.sense_at, self.name,
-                          self.input_labels, self.output_labels, self.state_labels)
-
     def __str__(self) -> str:
         signals = (("Inputs", self.input_labels), ("Outputs", self.output_labels), ("States", self.state_labels))
         return "\n".join([f"<OccupiedBridge> {self.name}: {self.people}", f"on {self.bridge}",
                           *(f"{kind} ({len(names)}): {_shortened(names)}" for kind, names in signals)])
-
-    def _repr_eval_(self) -> str:
-        return f"<OccupiedBridge {self.name}: {self.input_labels} -> {self.output_labels}, {self.nstates} states>"
-
-
-def _rebuild(
-    bridge: Footbridge, people: Crowd, positions: Array, force_at: Array, sense_at: Array,
-    name: str, inputs: list[str], outputs: list[str], states: list[str],
-) -> OccupiedBridge:
-    system = OccupiedBridge(bridge, people, positions, force_at=force_at, sense_at=sense_at, name=name)
-    system.update_names(inputs=inputs, outputs=outputs, states=states)
-    return system
 
 
 def _crowd(people: Any, n: int) -> Crowd:

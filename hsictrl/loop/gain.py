@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._names import labels
-from hsictrl.coupling import OccupiedBridge, OccupiedMeasurement
+from hsictrl.coupling import FrozenSystem, OccupiedBridge, OccupiedMeasurement
 
 Complex = NDArray[np.complex128]
 POINTS = 2001
@@ -20,7 +20,7 @@ REMEDY = "make one with couple(bridge, people, positions)"
 
 
 @final
-class LoopGain(ct.StateSpace):
+class LoopGain(FrozenSystem):
     """Once around the loop of an occupied bridge, from modal force to modal force. Made by `loop_gain`.
 
     States are z[j] and dz[j] of the empty bridge, r[k] and dr[k] of the sprung masses relative to the deck
@@ -47,10 +47,9 @@ class LoopGain(ct.StateSpace):
         self.occupied = check.instance("occupied", occupied, OccupiedBridge, REMEDY)
         n_m, n = occupied.bridge.n_modes, len(occupied.people)
         super().__init__(
-            *_matrices(occupied), 0, name=name, inputs=labels("P", n_m), outputs=labels("held", n_m),
+            {"occupied": occupied}, _matrices(occupied), name=name,
+            inputs=labels("P", n_m), outputs=labels("held", n_m),
             states=labels("z", n_m) + labels("dz", n_m) + labels("r", n) + labels("dr", n))
-        for matrix in (self.A, self.B, self.C, self.D):    # `horner` would not follow a change
-            matrix.flags.writeable = False
 
     def horner(self, x: Any, warn_infinite: bool = True) -> Complex:
         """Evaluate the loop gain by condensation; the host's functions call this.
@@ -117,19 +116,10 @@ class LoopGain(ct.StateSpace):
         own = np.concatenate([self.occupied.bridge.omega, self.occupied.people.omega]) / (2 * np.pi)
         return 0.1 * float(own.min()), 10 * float(own.max())
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> LoopGain:
-        return self.__reduce__()[0](*self.__reduce__()[1])
-
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        return _rebuild, (self.occupied, self.name, self.input_labels, self.output_labels, self.state_labels)
-
     def __str__(self) -> str:
         modes = self.ninputs
         return (f"<LoopGain> {self.name}: {self.occupied.people} around {modes} mode{'s' * (modes > 1)}, "
                 f"{self.nstates} states")
-
-    def _repr_eval_(self) -> str:
-        return f"<LoopGain {self.name}: {self.input_labels} -> {self.output_labels}, {self.nstates} states>"
 
 
 def loop_gain(
@@ -201,9 +191,3 @@ def _pair(band: Any) -> tuple[float, float]:
         raise ValueError(f"band must be (low, high) with low below high, got {pair.tolist()}; give two frequencies "
                          "in Hz")
     return float(pair[0]), float(pair[1])
-
-
-def _rebuild(occupied: OccupiedBridge, name: str, inputs: list[str], outputs: list[str], states: list[str]) -> LoopGain:
-    system = LoopGain(occupied, name)
-    system.update_names(inputs=inputs, outputs=outputs, states=states)
-    return system

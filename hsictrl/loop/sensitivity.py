@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from hsictrl import _checks as check
 from hsictrl._checks import Array
 from hsictrl._names import labels
-from hsictrl.coupling import OccupiedBridge, OccupiedMeasurement
+from hsictrl.coupling import FrozenSystem, OccupiedBridge, OccupiedMeasurement
 from hsictrl.loop.gain import LoopGain, loop_gain
 
 Complex = NDArray[np.complex128]
 
 
 @final
-class Sensitivity(ct.StateSpace):
+class Sensitivity(FrozenSystem):
     """The closed loop from outer to net modal forces, S = (I + L)⁻¹. Made by `sensitivity`.
 
     States are those of the loop gain; the frequency response is inverted from the condensed loop gain.
@@ -41,10 +41,8 @@ class Sensitivity(ct.StateSpace):
 
     def __init__(self, gain: LoopGain, name: str = "sensitivity") -> None:
         self.gain = check.instance("gain", gain, LoopGain, "make one with loop_gain(occupied)")
-        super().__init__(*_closed(gain), 0, name=name, inputs=labels("P", gain.ninputs),
+        super().__init__({"gain": gain}, _closed(gain), name=name, inputs=labels("P", gain.ninputs),
                          outputs=labels("net", gain.ninputs), states=gain.state_labels)
-        for matrix in (self.A, self.B, self.C, self.D):    # `horner` would not follow a change
-            matrix.flags.writeable = False
 
     def horner(self, x: Any, warn_infinite: bool = True) -> Complex:
         """Evaluate (I + L)⁻¹; the host's functions call this.
@@ -80,17 +78,8 @@ class Sensitivity(ct.StateSpace):
             left[:, :, ~known] = super().horner(s[~known], warn_infinite)
         return left
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Sensitivity:
-        return self.__reduce__()[0](*self.__reduce__()[1])
-
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        return _rebuild, (self.gain, self.name, self.input_labels, self.output_labels, self.state_labels)
-
     def __str__(self) -> str:
         return f"<Sensitivity> {self.name} of {str(self.gain).partition(': ')[2]}"
-
-    def _repr_eval_(self) -> str:
-        return f"<Sensitivity {self.name}: {self.input_labels} -> {self.output_labels}, {self.nstates} states>"
 
 
 def sensitivity(
@@ -146,9 +135,3 @@ def _closed(gain: LoopGain) -> tuple[Array, Array, Array, Array]:
     D = np.linalg.inv(np.eye(gain.ninputs) + gain.D)
     B, C = gain.B @ D, -D @ gain.C
     return gain.A + gain.B @ C, B, C, D
-
-
-def _rebuild(gain: LoopGain, name: str, inputs: list[str], outputs: list[str], states: list[str]) -> Sensitivity:
-    system = Sensitivity(gain, name)
-    system.update_names(inputs=inputs, outputs=outputs, states=states)
-    return system
