@@ -277,6 +277,17 @@ def test_effective_says_what_has_not_settled(monkeypatch, young):
     assert json.loads(run("effective", young, "--json").stdout)["rows"][0]["remarks"] == "too few"
 
 
+def test_effective_says_that_people_hardly_meet_a_lateral_mode(young, tmp_path):
+    (tmp_path / "nodes.csv").write_text("x,lateral_1\n" + "\n".join(f"{x},{np.sin(np.pi * x / 50)}" for x in range(51)))
+    (tmp_path / "modes.csv").write_text("mode,frequency,damping,modal_mass\n1,1.2,0.01,25e3")
+    path = tmp_path / "lateral.toml"
+    path.write_text("[bridge]\nkind = 'csv'\nshapes = 'nodes.csv'\nmodes = 'modes.csv'\nwidth = 3.0\nmass = 5e4\n"
+                    "[traffic]\npersons = 15")
+    remark = "Remark: the first mode does not move vertically at its antinode, where people would change it the most."
+    told = [" ".join(run("effective", file, "--tolerance", 0.2).stdout.split()) for file in (path, young)]
+    assert [remark in one for one in told] == [True, False]
+
+
 # simulate
 
 @pytest.fixture(scope="module")

@@ -82,5 +82,7 @@ def _table(rows: Rows) -> Table:
 
 def _notes(case: Description, rule: MeanRule, found: list[Ensemble]) -> list[str]:
     unsettled = [(flow, one.reason) for flow, one in zip(case.flows, found, strict=True) if not one.converged]
-    return [*tables.case_notes(case), tables.interval_note(rule),
+    lateral = [] if case.bridge.moves_vertically(0) else [
+        "Remark: the first mode does not move vertically at its antinode, where people would change it the most."]
+    return [*tables.case_notes(case), tables.interval_note(rule), *lateral,
             *(f"Remark on {flow}: {reason}." for flow, reason in unsettled)]
