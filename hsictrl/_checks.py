@@ -66,6 +66,14 @@ def known(name: str, values: Any, *, remedy: str) -> np.ma.MaskedArray:
     return np.ma.array(numbers(name, np.where(unknown, 0.0, array), remedy=remedy), mask=unknown)
 
 
+def band(values: Any) -> tuple[float, float]:
+    """Return `values` as two frequencies above 0 [Hz]; refuse anything else."""
+    pair = numbers("band", values, above=0, ndim=1, remedy="give (low, high) in Hz")
+    if len(pair) != 2:
+        raise ValueError(f"band must hold two frequencies, got {len(pair)}; give (low, high) in Hz")
+    return float(pair[0]), float(pair[1])
+
+
 def even_times(name: str, values: Any) -> Array:
     """Return `values` as at least two times that increase evenly [s]; refuse anything else."""
     times = numbers(name, values, ndim=1, remedy="give an evenly spaced array of seconds")

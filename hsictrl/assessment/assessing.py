@@ -9,12 +9,12 @@ import numpy as np
 from hsictrl import _checks as check
 from hsictrl.assessment.assessed import Assessment
 from hsictrl.assessment.guides import GuideCase, guide_cases, guide_value
-from hsictrl.assessment.trials import EffectiveTrial, PeakTrial, check_case
+from hsictrl.assessment.trials import EffectiveTrial, PeakTrial
 from hsictrl.bridge import Footbridge
 from hsictrl.comfort import COMFORT_CLASSES, DesignResponse
 from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import tune
-from hsictrl.prediction.refusals import check_vertical
+from hsictrl.prediction.refusals import check_case, check_excitable
 from hsictrl.study import AllRules, Ensemble, Ledger, MeanRule, PercentileRule, StopRule, monte_carlo
 from hsictrl.walking import WalkingForce, ZivanovicForce
 
@@ -168,11 +168,7 @@ def check_assessable(bridge: Footbridge, flow: CrowdFlow, *, mode: int = 0) -> N
     >>> check_assessable(reference_bridge(), CrowdFlow(density=1.5))
     """
     check_case(bridge, flow)
-    if not flow.persons_on(bridge):
-        raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
-                         "give a higher one")
-    check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
-    check_vertical(bridge, mode)
+    check_excitable(bridge, flow, mode)
     guide_value(bridge, flow, mode=mode)
     flow.drawn_from(bridge)
 

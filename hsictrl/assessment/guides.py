@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from hsictrl._checks import Direction
-from hsictrl.assessment.trials import check_case
 from hsictrl.bridge import Extent, Footbridge
 from hsictrl.comfort import GUIDE_LOADS, DesignResponse, design_acceleration
 from hsictrl.crowd import CrowdFlow
+from hsictrl.prediction.refusals import check_case
 
 PERSON_MASS = 70.0       # kg, of the guides
 LEAST_MOTION = 0.01      # of the antinode's; what moves less in a direction is not met by its load

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from hsictrl.bridge import Footbridge
 from hsictrl.coupling import couple
 from hsictrl.crowd import CrowdFlow
 from hsictrl.prediction import MODELS, Prediction, check_alike, predict, predict_tuned, tuned_peaks
+from hsictrl.prediction.refusals import check_case
 from hsictrl.prediction.shared import SHARED_MODELS
 from hsictrl.resonance import effective
 from hsictrl.walking import WalkingForce, ZivanovicForce
@@ -194,9 +195,3 @@ class EffectiveTrial:
     def __call__(self, rng: np.random.Generator) -> Array:
         people, places = self.flow.crowd(self.bridge, rng)
         return np.array([*effective(couple(self.bridge, people, places), mode=self.mode)])
-
-
-def check_case(bridge: Any, flow: Any) -> None:
-    """Refuse what is no bridge, or no flow."""
-    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
-    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")

@@ -63,7 +63,7 @@ from hsictrl.bridge import Footbridge, reference_bridge
 from hsictrl.cli import schema
 from hsictrl.cli.schema import Keys, Table
 from hsictrl.comfort import COMFORT_CLASSES
-from hsictrl.crowd import TRAFFIC_CLASSES, CrowdFlow
+from hsictrl.crowd import TRAFFIC_CLASSES, CrowdFlow, check_somebody
 from hsictrl.pedestrian import Population
 from hsictrl.pedestrian.population import POSTURES
 from hsictrl.walking import HarmonicForce, WalkingForce, YoungForce, ZivanovicForce
@@ -105,9 +105,7 @@ class Description:
     def __post_init__(self) -> None:
         check.whole("seed", self.seed, least=0, remedy="give 0, 1, 2, …")
         for flow in self.flows:
-            if not flow.persons_on(self.bridge):
-                raise ValueError(f"density must put at least one person on the deck of {self.bridge.area:g} m², got "
-                                 f"{flow}; give a higher one")
+            check_somebody(flow, self.bridge)
 
     @property
     def aims(self) -> list[tuple[CrowdFlow, str | None]]:

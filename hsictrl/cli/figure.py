@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import product
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +15,7 @@ from hsictrl._progress import progress
 from hsictrl.assessment import Assessment
 from hsictrl.cli.crossing import Crossing
 from hsictrl.cli.description import Description
-from hsictrl.coupling import OccupiedBridge
-from hsictrl.report.pictures import band_frf
-from hsictrl.resonance import effective
+from hsictrl.report.pictures import FirstTrial
 from hsictrl.study import Estimates
 
 MULTIPLES = 4                    # of the step frequency, marked on a spectrum
@@ -28,11 +26,9 @@ PANEL_TITLES: dict[str, Callable[[Any], str]] = {
 
 def draw(path: Path, found: Assessment, case: Description) -> None:
     """Draw one assessment, with the frequency responses and histories of its first trial, into a file."""
-    first = [found.prediction(model) for model in ("MF", "PMC")]
-    systems = [cast(OccupiedBridge, one.system) for one in first]     # neither model is MC
+    first = FirstTrial.of(found)
     plot = plots.assessment_figure(
-        frfs=[band_frf(system) for system in systems], effective=[effective(system) for system in systems],
-        responses=[one.response for one in first], ensembles=[found.mf, found.pmc],
+        frfs=first.frfs, effective=first.effective, responses=first.responses, ensembles=[found.mf, found.pmc],
         title=f"{found.flow} on {str(case.bridge).splitlines()[0]}; (a), (b): trial 0 of seed {case.seed}")
     plots.save(plot, path)
 

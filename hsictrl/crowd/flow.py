@@ -357,6 +357,31 @@ class CrowdFlow:
                        standing=self.crowd(bridge, standing), spread=spread, drawn_from=earliest)
 
 
+def check_somebody(flow: CrowdFlow, bridge: Footbridge) -> None:
+    """Refuse a flow that leaves the deck empty.
+
+    Parameters
+    ----------
+    flow : CrowdFlow
+        The stream of people.
+    bridge : Footbridge
+        The bridge, for its deck.
+
+    Raises
+    ------
+    ValueError
+        If nobody is on the deck on average.
+
+    Examples
+    --------
+    >>> from hsictrl.bridge import reference_bridge
+    >>> check_somebody(CrowdFlow(persons=1), reference_bridge())
+    """
+    if not flow.persons_on(bridge):
+        raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
+                         "give a higher one")
+
+
 def settling_time(crossing: float, decay: float) -> float:
     """Time from a full deck to the observed window: max(T, 5/(ξω)) [s].
 

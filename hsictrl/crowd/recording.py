@@ -46,13 +46,14 @@ class Recording:
     def __post_init__(self) -> None:
         for head in ("id", "time", "x", "y"):
             self._check_finite(head)
-        order = np.lexsort((self.columns["time"], self._who()))
-        again = np.all([one[order[1:]] == one[order[:-1]] for one in (self._who(), self.columns["time"])], axis=0)
+        who, times = self._who(), self.columns["time"]
+        order = np.lexsort((times, who))
+        again = np.all([one[order[1:]] == one[order[:-1]] for one in (who, times)], axis=0)
         if np.any(again):
             i = int(np.argmax(again))
             first, second = sorted(order[i:i + 2])
             raise ValueError(f"{self.place(second, 'id')}: nobody can be recorded twice at a time, got person "
-                             f"{self.columns['id'][second]:g} at {self.columns['time'][second]:g} s in row "
+                             f"{self.columns['id'][second]:g} at {times[second]:g} s in row "
                              f"{self.rows[first]}, too; leave one of them out")
 
     def place(self, index: int, head: str) -> str:

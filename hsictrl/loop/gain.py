@@ -106,7 +106,7 @@ class LoopGain(FrozenSystem):
         >>> print(hertz[[0, -1]], 2.0 in hertz)
         [1. 4.] True
         """
-        low, high = self._limits() if band is None else _pair(band)
+        low, high = self._limits() if band is None else _rising(band)
         modes = self.occupied.bridge.omega / (2 * np.pi)
         around = np.multiply.outer(modes, np.concatenate([1 - AROUND, [1], 1 + AROUND])).ravel()
         inside = around[(around > low) & (around < high)]
@@ -185,9 +185,8 @@ def _matrices(occupied: OccupiedBridge) -> tuple[Array, Array, Array, Array]:
     return A, B, C, D
 
 
-def _pair(band: Any) -> tuple[float, float]:
-    pair = check.numbers("band", band, above=0, ndim=1, remedy="give (low, high) in Hz")
-    if len(pair) != 2 or pair[0] >= pair[1]:
-        raise ValueError(f"band must be (low, high) with low below high, got {pair.tolist()}; give two frequencies "
-                         "in Hz")
-    return float(pair[0]), float(pair[1])
+def _rising(band: Any) -> tuple[float, float]:
+    low, high = check.band(band)
+    if low >= high:
+        raise ValueError(f"band must be (low, high) with low below high, got {[low, high]}; give two frequencies in Hz")
+    return low, high

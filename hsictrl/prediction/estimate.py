@@ -16,7 +16,7 @@ from hsictrl.crowd import CrowdFlow, resonant_step_frequency
 from hsictrl.crowd.average import mean_crowd
 from hsictrl.crowd.traffic import step_remarks
 from hsictrl.prediction.extremes import envelope_correlation, independent_peaks, peak_factor
-from hsictrl.prediction.refusals import check_vertical
+from hsictrl.prediction.refusals import check_case, check_excitable
 from hsictrl.prediction.shotnoise import Band, Complex, StepRule, mean_square_lines, modal_spectrum
 from hsictrl.resonance.effective import effective
 from hsictrl.walking import WalkingForce, ZivanovicForce
@@ -174,13 +174,8 @@ def _switches(frequency: float) -> tuple[str, ...]:
 def _checked(model: str, bridge: Any, flow: Any, force: WalkingForce | None) -> WalkingForce:
     """Refuse what has no spectrum."""
     check.choice("model", model, MODELS)
-    check.instance("bridge", bridge, Footbridge, "describe the bridge by its modes")
-    check.instance("flow", flow, CrowdFlow, "use CrowdFlow(density=…) or CrowdFlow(persons=…)")
-    check.numbers("damping", bridge.damping, above=0, below=1, remedy="nothing settles without; give such as 0.005")
-    check_vertical(bridge)
-    if not flow.persons_on(bridge):
-        raise ValueError(f"density must put at least one person on the deck of {bridge.area:g} m², got {flow}; "
-                         "give a higher one")
+    check_case(bridge, flow)
+    check_excitable(bridge, flow)
     force = ZivanovicForce() if force is None else force
     return check.instance("force", force, WalkingForce, "use YoungForce or ZivanovicForce")
 

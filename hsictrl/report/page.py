@@ -11,7 +11,7 @@ from hsictrl import __version__
 from hsictrl import _checks as check
 from hsictrl.assessment import Assessment
 from hsictrl.report.assumptions import assumptions
-from hsictrl.report.pictures import response_pictures, shapes_picture
+from hsictrl.report.pictures import FirstTrial, response_pictures, shapes_picture
 from hsictrl.report.sections import Section
 from hsictrl.report.tables import (
     answer_table,
@@ -75,11 +75,13 @@ def report_page(
 def _sections(
     found: tuple[Assessment, ...], largest: Assessment, description: str, command: str,
 ) -> list[Section]:
-    one, (frequencies, history, settles) = found[0], response_pictures(largest)
+    one, first = found[0], FirstTrial.of(largest)
+    frequencies, history, settles = response_pictures(largest, first)
     return [
         Section(title="Answer", text=answer(found, largest), tables=[answer_table(found)]),
         Section(title="Inputs", tables=[deck_table(one), traffic_table(found)], quoted=description),
-        Section(title="Modes", text=[resonance(one)], tables=[modes_table(found)], pictures=[shapes_picture(largest)]),
+        Section(title="Modes", text=[resonance(one)], tables=[modes_table(found)],
+                pictures=[shapes_picture(largest, first)]),
         Section(title="Effective properties", tables=[effective_table(found)], pictures=[frequencies]),
         Section(title="One history", pictures=[history]),
         Section(title="Convergence", pictures=[settles]),

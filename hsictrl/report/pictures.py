@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from typing import cast
+from typing import NamedTuple, cast
 
 import control as ct
 import numpy as np
@@ -12,21 +12,37 @@ from hsictrl import plots
 from hsictrl.assessment import Assessment
 from hsictrl.coupling import OccupiedBridge
 from hsictrl.report.sections import Picture
-from hsictrl.resonance import effective, frf
+from hsictrl.resonance import EffectiveProperties, effective, frf
 
 BAND, LINES = (0.5, 1.5), 2001    # of the frequency of the mode in resonance
 MODELS = ("MF", "PMC")
 WIDTH, WIDER = 4.8, 6.4           # inches; narrow, so that letters can be read on a narrow screen
 
 
-def band_frf(system: OccupiedBridge) -> ct.FrequencyResponseData:
-    """Frequency response about the first mode of a bridge [m/s² per N]."""
+class FirstTrial(NamedTuple):
+    """The first trial of a study, without and with interaction."""
+
+    responses: list[ct.TimeResponseData]
+    systems: list[OccupiedBridge]
+    frfs: list[ct.FrequencyResponseData]     # about the mode in resonance
+    effective: list[EffectiveProperties]
+
+    @classmethod
+    def of(cls, found: Assessment) -> FirstTrial:
+        predictions = [found.prediction(model) for model in MODELS]
+        systems = [cast(OccupiedBridge, one.system) for one in predictions]     # neither model is MC
+        return cls(responses=[one.response for one in predictions], systems=systems,
+                   frfs=[_about_resonance(system) for system in systems],
+                   effective=[effective(system) for system in systems])
+
+
+def _about_resonance(system: OccupiedBridge) -> ct.FrequencyResponseData:
     return frf(system, system.bridge.modes[0].frequency * np.linspace(*BAND, LINES))
 
 
-def shapes_picture(found: Assessment) -> Picture:
+def shapes_picture(found: Assessment, first: FirstTrial) -> Picture:
     """The mode shapes, over the crowd of the first trial."""
-    bridge, crowd = found.bridge, cast(OccupiedBridge, found.prediction("PMC").system)
+    bridge, crowd = found.bridge, first.systems[-1]
     n = len(bridge.absorbers)     # which come first among the bodies
     absorbers = {"absorbers": crowd.positions[:n]} if n else {}
     plot = plots.modes_plot(bridge, {"standing crowd of trial 0": crowd.positions[n:]} | absorbers)
@@ -35,15 +51,11 @@ def shapes_picture(found: Assessment) -> Picture:
                     "crowd on it", "Mode shapes, and where people stand in trial 0.")
 
 
-def response_pictures(found: Assessment) -> list[Picture]:
+def response_pictures(found: Assessment, first: FirstTrial) -> list[Picture]:
     """Frequency responses, one history, and how the percentile settles."""
-    first = [found.prediction(model) for model in MODELS]
-    systems = [cast(OccupiedBridge, one.system) for one in first]     # neither model is MC
-    ensembles = [found.mf, found.pmc]
-    responses = plots.frf_plot([band_frf(system) for system in systems], labels=("empty bridge", "occupied bridge"),
-                               effective=[effective(system) for system in systems])
-    history = plots.response_plot([one.response for one in first], labels=MODELS)
-    settles = plots.convergence_plot(ensembles, labels=MODELS)
+    responses = plots.frf_plot(first.frfs, labels=("empty bridge", "occupied bridge"), effective=first.effective)
+    history = plots.response_plot(first.responses, labels=MODELS)
+    settles = plots.convergence_plot([found.mf, found.pmc], labels=MODELS)
     where, size = f"under {found.flow}, trial 0 of seed {found.pmc.seed}", (WIDTH, 3.2)
     return [
         _picture(responses, size, "Accelerance over frequency, empty and occupied, with the peaks marked",

@@ -178,7 +178,7 @@ def _curve(system: OccupiedBridge | OccupiedMeasurement, mode: int) -> Curve:
 
 
 def _hertz_band(band: Any, curve: Curve) -> tuple[float, float]:
-    low, high = _pair(band)
+    low, high = check.band(band)
     omega = 2 * np.pi * low, 2 * np.pi * high
     if isinstance(curve, MeasuredCurve):
         omega = max(omega[0], curve.band[0]), min(omega[1], curve.band[1])
@@ -191,10 +191,3 @@ def _hertz_band(band: Any, curve: Curve) -> tuple[float, float]:
 def _unbounded(where: str) -> ValueError:
     return ValueError(f"effective properties need damping, got a peak of |H| without bound {where}; "
                       "give the bridge a damping ratio above 0")
-
-
-def _pair(band: Any) -> tuple[float, float]:
-    pair = check.numbers("band", band, above=0, ndim=1, remedy="give (low, high) in Hz")
-    if len(pair) != 2:
-        raise ValueError(f"band must hold two frequencies, got {len(pair)}; give (low, high) in Hz")
-    return float(pair[0]), float(pair[1])
